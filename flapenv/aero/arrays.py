@@ -1,0 +1,59 @@
+"""The one place that knows NumPy from torch.
+
+A formula asks for its array library once, `xp, x, y = as_arrays(x, y)`, and is then written
+with names that NumPy >= 2 and torch share (`xp.asin`, `xp.clip`, `xp.sum(..., axis=-1)`). torch is never imported
+here: a tensor can only arrive where torch is loaded already.
+"""
+
+import sys
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+Real = Any
+"""A real scalar, a NumPy array or a torch tensor; formulas broadcast over all three alike."""
+
+
+def is_tensor(value: Real) -> bool:
+    """Whether `value` is a torch tensor, found out without importing torch."""
+    torch = sys.modules.get("torch")
+    return torch is not None and isinstance(value, torch.Tensor)
+
+
+def as_arrays(*values: Real) -> tuple[Any, ...]:
+    """Bring numbers of mixed kinds to one array library and one floating type.
+
+    Python scalars adapt to the arrays beside them, as NumPy promotes them; one tensor makes the rest tensors
+    of its type on its device.
+
+    Args:
+        *values: scalars, arrays or tensors of any shapes (nothing is broadcast here).
+
+    Returns:
+        The array library followed by the converted values, in order.
+    """
+    tensors = [value for value in values if is_tensor(value)]
+    if tensors:
+        torch: ModuleType = sys.modules["torch"]
+        like = tensors[0]
+        return (torch, *(torch.as_tensor(v, dtype=like.dtype, device=like.device) for v in values))
+    kinds = [v if isinstance(v, int | float) else np.asarray(v).dtype for v in values]
+    dtype = np.result_type(np.float16, *kinds) if kinds else np.dtype(float)
+    if dtype == np.float16:  # Python scalars alone carry no type
+        dtype = np.dtype(float)
+    return (np, *(np.asarray(value, dtype=dtype) for value in values))
+
+
+def as_numpy(value: Real) -> np.ndarray:
+    """A detached float copy or view of `value`, for checks, tables and pictures."""
+    if is_tensor(value):
+        value = value.detach().cpu().numpy()
+    return np.asarray(value, dtype=float)
+
+
+def as_result(value: Real) -> Real:
+    """A Python float for a NumPy number without axes; arrays and tensors as they are."""
+    if is_tensor(value) or np.ndim(value):
+        return value
+    return float(value)

@@ -1,0 +1,127 @@
+"""Bad input is refused at the boundary, by an error that names the field, the value and what is allowed."""
+
+import difflib
+import functools
+from collections.abc import Iterable
+from dataclasses import MISSING, dataclass, fields
+from typing import Any, TypeVar, dataclass_transform
+
+import numpy as np
+
+from flapenv.aero.arrays import Real, as_numpy, is_tensor
+
+T = TypeVar("T")
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+def record(cls: type[T]) -> type[T]:
+    """Make a frozen, keyword-only dataclass whose errors list the fields that exist.
+
+    Raises:
+        TypeError: on construction, for an unknown or a missing field.
+    """
+    made = dataclass(frozen=True, kw_only=True)(cls)
+    generated = made.__init__
+    known = [f.name for f in fields(made) if f.init]  # type: ignore[arg-type]
+    needed = [
+        f.name
+        for f in fields(made)  # type: ignore[arg-type]
+        if f.init and f.default is MISSING and f.default_factory is MISSING
+    ]
+
+    @functools.wraps(generated)
+    def __init__(self: Any, **values: Any) -> None:
+        for name, value in values.items():
+            if name not in known:
+                raise TypeError(f"{made.__name__} has no field {name!r} (got {value!r}); {allowed(name, known)}")
+        missing = [name for name in needed if name not in values]
+        if missing:
+            raise TypeError(f"{made.__name__} needs {', '.join(missing)}; its fields are {', '.join(known)}")
+        generated(self, **values)
+
+    made.__init__ = __init__  # type: ignore[method-assign,assignment]
+    return made
+
+
+def allowed(name: object, names: Iterable[str]) -> str:
+    """The end of an error message: what may stand in the place of `name`, and the nearest guess."""
+    names = list(names)
+    near = difflib.get_close_matches(str(name), names, n=1)
+    guess = f"; did you mean {near[0]!r}?" if near else ""
+    return f"allowed: {', '.join(names)}{guess}"
+
+
+def require_name(field: str, value: object, names: Iterable[str]) -> str:
+    """`value` if it is one of `names`.
+
+    Raises:
+        ValueError: naming the field, the value, all names and the nearest one.
+    """
+    names = list(names)
+    if not isinstance(value, str) or value not in names:
+        raise ValueError(f"{field} = {value!r} is unknown; {allowed(value, names)}")
+    return value
+
+
+def interval_text(low: float, high: float, *, open_low: bool, open_high: bool, unit: str) -> str:
+    """A range as one reads it, `(0, 1.571] rad`."""
+    ends = ("(" if open_low or np.isinf(low) else "[", ")" if open_high or np.isinf(high) else "]")
+    return f"{ends[0]}{low:.6g}, {high:.6g}{ends[1]}{f' {unit}' if unit else ''}"
+
+
+def require_real(
+    field: str,
+    value: Real,
+    low: float = -np.inf,
+    high: float = np.inf,
+    *,
+    open_low: bool = False,
+    open_high: bool = False,
+    unit: str = "",
+) -> Real:
+    """`value`, finite and within the interval, as a float, an array of floats or the tensor it was.
+
+    Args:
+        field: the name used in the error.
+        value: a scalar, array or tensor, any shape.
+        low: lower end [`unit`].
+        high: upper end [`unit`].
+        open_low: whether the lower end itself is refused.
+        open_high: whether the upper end itself is refused.
+        unit: the unit's name, for the error.
+
+    Raises:
+        TypeError: if `value` is not real numbers.
+        ValueError: if any element is NaN, infinite or outside.
+    """
+    where = interval_text(low, high, open_low=open_low, open_high=open_high, unit=unit)
+    if isinstance(value, str | bytes | bool | np.bool_) or value is None:
+        raise TypeError(f"{field} = {value!r} is not a real number; allowed: {where}")
+    try:
+        numbers = as_numpy(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{field} = {value!r} is not a real number; allowed: {where}") from None
+    bad = ~np.isfinite(numbers)
+    bad |= (numbers <= low) if open_low else (numbers < low)
+    bad |= (numbers >= high) if open_high else (numbers > high)
+    if np.any(bad):
+        index = tuple(int(i) for i in np.argwhere(bad)[0])
+        place = f"{field}[{', '.join(map(str, index))}]" if index else field
+        raise ValueError(f"{place} = {numbers[index]:.6g} is not allowed; allowed: finite, in {where}")
+    if is_tensor(value):
+        return value
+    return numbers if numbers.ndim else float(numbers)
+
+
+def require_count(field: str, value: object, low: int = 1) -> int:
+    """`value` as an int of at least `low`.
+
+    Raises:
+        TypeError: if it is not a whole number.
+        ValueError: if it is below `low`.
+    """
+    if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
+        raise TypeError(f"{field} = {value!r} is not a whole number; allowed: whole numbers from {low}")
+    if value < low:
+        raise ValueError(f"{field} = {value} is not allowed; allowed: whole numbers from {low}")
+    return int(value)

@@ -1,0 +1,129 @@
+"""The six numbers that describe a stroke: the one table behind its checks, the boxes, the actions and the docs."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from flapenv.aero.checks import interval_text, require_real
+
+
+@dataclass(frozen=True, kw_only=True)
+class StrokeParameter:
+    """One row of the table.
+
+    Attributes:
+        name: field of `Stroke` and key of every box.
+        symbol: the paper's symbol.
+        meaning: what it is, in words.
+        unit: SI unit of the value, empty for a ratio.
+        low: lower end of what is physically meaningful [unit].
+        high: upper end [unit].
+        open_low: whether `low` itself is refused.
+        open_high: whether `high` itself is refused.
+        box: the default search box [unit]; for the frequency in multiples of the reference frequency.
+        scale: how an action in [-1, 1] runs over the box: "linear", "log" (of the value) or "log-complement"
+            (of one minus the value).
+    """
+
+    name: str
+    symbol: str
+    meaning: str
+    unit: str
+    low: float
+    high: float
+    open_low: bool = False
+    open_high: bool = False
+    box: tuple[float, float]
+    scale: Literal["linear", "log", "log-complement"]
+
+    def check(self, value: object, *, field: str | None = None) -> object:
+        """`value` if it lies in the valid range.
+
+        Raises:
+            TypeError: if it is not real.
+            ValueError: if it is outside, NaN or infinite.
+        """
+        return require_real(
+            field or self.name,
+            value,
+            self.low,
+            self.high,
+            open_low=self.open_low,
+            open_high=self.open_high,
+            unit=self.unit,
+        )
+
+    @property
+    def valid_range(self) -> str:
+        """The valid range as text."""
+        return interval_text(self.low, self.high, open_low=self.open_low, open_high=self.open_high, unit=self.unit)
+
+
+STROKE_PARAMETERS: dict[str, StrokeParameter] = {
+    row.name: row
+    for row in (
+        StrokeParameter(
+            name="frequency",
+            symbol="f",
+            meaning="flapping frequency",
+            unit="Hz",
+            low=0.0,
+            high=math.inf,
+            open_low=True,
+            box=(0.5, 1.5),
+            scale="log",
+        ),
+        StrokeParameter(
+            name="flap_amplitude",
+            symbol="φmax",
+            meaning="flapping amplitude, half of the angle swept in a half-stroke",
+            unit="rad",
+            low=0.0,
+            high=math.pi,
+            open_low=True,
+            box=(math.radians(40), math.radians(90)),
+            scale="linear",
+        ),
+        StrokeParameter(
+            name="flap_shape",
+            symbol="Cφ",
+            meaning="flapping waveform: 0 a sinusoid, 1 a triangle",
+            unit="",
+            low=0.0,
+            high=1.0,
+            box=(0.01, 0.99),
+            scale="log-complement",
+        ),
+        StrokeParameter(
+            name="pitch_shape",
+            symbol="Cθ",
+            meaning="pitching waveform: 0 a sinusoid, large a square wave",
+            unit="",
+            low=0.0,
+            high=math.inf,
+            box=(0.1, 10.0),
+            scale="log",
+        ),
+        StrokeParameter(
+            name="pitch_amplitude",
+            symbol="θmax",
+            meaning="pitching amplitude, 90° minus the smallest angle of attack of the cycle",
+            unit="rad",
+            low=0.0,
+            high=math.pi / 2,
+            box=(math.radians(45), math.radians(65)),
+            scale="linear",
+        ),
+        StrokeParameter(
+            name="pitch_phase",
+            symbol="δ",
+            meaning="pitching phase: 90° symmetric rotation, more advanced, less delayed",
+            unit="rad",
+            low=-2 * math.pi,
+            high=2 * math.pi,
+            box=(math.radians(60), math.radians(120)),
+            scale="linear",
+        ),
+    )
+}
+"""By name, in the order of the action's rows."""

@@ -1,0 +1,165 @@
+"""The stroke: waveforms of the flapping and pitching angles over one wingbeat, (2.1)-(2.3), and their rates."""
+
+import math
+from typing import Any, Protocol
+
+import numpy as np
+
+from flapenv.aero.arrays import Real, as_arrays
+from flapenv.aero.checks import record
+from flapenv.aero.parameters import STROKE_PARAMETERS
+
+SMALLEST_SHAPE = 1e-8
+"""Below this Cφ or Cθ both waveforms are their sinusoidal limit to rounding; it stands in for zero."""
+
+
+def flap_waveform(sin_phase: Real, flap_shape: Real) -> Real:
+    """φ/φmax = asin(Cφ sin ωt)/asin(Cφ) [-]  (2.1).
+
+    Args:
+        sin_phase: sin ωt [-], any shape.
+        flap_shape: Cφ in [0, 1] [-], broadcast against `sin_phase`; both limits are exact.
+
+    Returns:
+        The flapping angle over its amplitude, in [-1, 1].
+    """
+    xp, sin_phase, shape = as_arrays(sin_phase, flap_shape)
+    shape = xp.clip(shape, SMALLEST_SHAPE, None)
+    return xp.asin(shape * sin_phase) / xp.asin(shape)
+
+
+def flap_speed(cos_phase: Real, flap_shape: Real) -> Real:
+    """φ̇/(ω φmax) = Cφ cos ωt/(asin(Cφ) √(1 - Cφ² sin² ωt)) [-], the rate of (2.1).
+
+    The root is taken of (1-Cφ)(1+Cφ) + Cφ² cos² ωt, which keeps its digits as Cφ → 1.
+
+    Args:
+        cos_phase: cos ωt [-], any shape.
+        flap_shape: Cφ in [0, 1] [-], broadcast against `cos_phase`; both limits are exact.
+
+    Returns:
+        The flapping rate over ω φmax, ±2/π for the triangle; 0 at its corners.
+    """
+    xp, cos_phase, shape = as_arrays(cos_phase, flap_shape)
+    shape = xp.clip(shape, SMALLEST_SHAPE, None)
+    scaled = shape * cos_phase
+    root = xp.sqrt(xp.clip((1 - shape) * (1 + shape) + scaled * scaled, 1e-36, None))
+    return scaled / (xp.asin(shape) * root)
+
+
+def pitch_waveform(sin_pitch_phase: Real, pitch_shape: Real) -> Real:
+    """θ/θmax = tanh(Cθ sin(ωt + δ))/tanh(Cθ) [-]  (2.2).
+
+    Args:
+        sin_pitch_phase: sin(ωt + δ) [-], any shape.
+        pitch_shape: Cθ >= 0 [-], broadcast against `sin_pitch_phase`; Cθ = 0 and Cθ → ∞ are exact.
+
+    Returns:
+        The pitching angle over its amplitude, in [-1, 1].
+    """
+    xp, sin_pitch_phase, shape = as_arrays(sin_pitch_phase, pitch_shape)
+    shape = xp.clip(shape, SMALLEST_SHAPE, None)
+    return xp.tanh(shape * sin_pitch_phase) / xp.tanh(shape)
+
+
+def angle_of_attack(pitch_angle: Real, flap_rate: Real) -> Real:
+    """α = 90° - θ sgn φ̇ [rad], in (0, π)  (2.3), planar stroke.
+
+    Args:
+        pitch_angle: θ [rad], any shape.
+        flap_rate: φ̇, of which only the sign counts, broadcast against `pitch_angle`.
+
+    Returns:
+        The angle of attack [rad].
+    """
+    xp, pitch_angle, flap_rate = as_arrays(pitch_angle, flap_rate)
+    return math.pi / 2 - pitch_angle * xp.sign(flap_rate)
+
+
+class Motion(Protocol):
+    """What the blade-element oracle asks of a wing motion; phases ωt [rad], angles [rad], rates [rad/s]."""
+
+    @property
+    def frequency(self) -> Any:
+        """f [Hz]."""
+
+    @property
+    def flap_amplitude(self) -> Any:
+        """φmax [rad]."""
+
+    def flap_angle(self, phase: np.ndarray) -> np.ndarray:
+        """φ at the phases [rad]."""
+
+    def flap_rate(self, phase: np.ndarray) -> np.ndarray:
+        """φ̇ at the phases [rad/s]."""
+
+    def pitch_angle(self, phase: np.ndarray) -> np.ndarray:
+        """θ at the phases [rad]."""
+
+
+@record
+class Stroke:
+    """One wingbeat's kinematics (Nabawy & Crowther 2014, Part II, section 2.2).
+
+    Every field is a scalar, an array or a torch tensor; arrays broadcast against each other. The waveform by default
+    is the one with which the paper meets Sun & Du's CFD (section 3.3): sinusoidal flapping, Cθ = 5, symmetric
+    rotation.
+
+    Attributes:
+        frequency: f [Hz], > 0.
+        flap_amplitude: φmax [rad], in (0, π].
+        pitch_amplitude: θmax = 90° - α_mid [rad], in [0, π/2].
+        flap_shape: Cφ [-], in [0, 1].
+        pitch_shape: Cθ [-], >= 0.
+        pitch_phase: δ [rad], in [-2π, 2π].
+
+    Raises:
+        TypeError: for an unknown or missing field, or one that is not real.
+        ValueError: for a value outside its range, NaN or inf.
+    """
+
+    frequency: Real
+    flap_amplitude: Real
+    pitch_amplitude: Real
+    flap_shape: Real = 0.0
+    pitch_shape: Real = 5.0
+    pitch_phase: Real = math.pi / 2
+
+    def __post_init__(self) -> None:
+        """Check every field."""
+        for name, parameter in STROKE_PARAMETERS.items():
+            object.__setattr__(self, name, parameter.check(getattr(self, name)))
+
+    @property
+    def mean_flap_speed(self) -> Real:
+        """⟨|φ̇|⟩ = 4 f φmax [rad/s]."""
+        return 4 * self.frequency * self.flap_amplitude
+
+    def flap_angle(self, phase: Real) -> Real:
+        """φ(ωt) [rad]  (2.1); phases [rad] broadcast against the fields."""
+        xp, phase, amplitude = as_arrays(phase, self.flap_amplitude)
+        return amplitude * flap_waveform(xp.sin(phase), self.flap_shape)
+
+    def flap_rate(self, phase: Real) -> Real:
+        """φ̇(ωt) [rad/s], the rate of (2.1); phases [rad] broadcast against the fields."""
+        xp, phase, amplitude, frequency = as_arrays(phase, self.flap_amplitude, self.frequency)
+        return 2 * math.pi * frequency * amplitude * flap_speed(xp.cos(phase), self.flap_shape)
+
+    def pitch_angle(self, phase: Real) -> Real:
+        """θ(ωt) [rad]  (2.2); phases [rad] broadcast against the fields."""
+        xp, phase, amplitude, delta = as_arrays(phase, self.pitch_amplitude, self.pitch_phase)
+        return amplitude * pitch_waveform(xp.sin(phase + delta), self.pitch_shape)
+
+    def pitch_rate(self, phase: Real) -> Real:
+        """θ̇(ωt) = θmax ω Cθ cos(ωt+δ) sech²(Cθ sin(ωt+δ))/tanh(Cθ) [rad/s], the rate of (2.2)."""
+        xp, phase, amplitude, frequency, delta, shape = as_arrays(
+            phase, self.pitch_amplitude, self.frequency, self.pitch_phase, self.pitch_shape
+        )
+        shape = xp.clip(shape, SMALLEST_SHAPE, None)
+        decay = xp.exp(-2 * xp.abs(shape * xp.sin(phase + delta)))
+        sech_squared = 4 * decay / (1 + decay) ** 2
+        return amplitude * 2 * math.pi * frequency * shape * xp.cos(phase + delta) * sech_squared / xp.tanh(shape)
+
+    def angle_of_attack(self, phase: Real) -> Real:
+        """α(ωt) [rad]  (2.3)."""
+        return angle_of_attack(self.pitch_angle(phase), self.flap_rate(phase))

@@ -1,0 +1,91 @@
+"""The fast path: cycle averages by exact span moments and a quadrature in time whose node count follows the stroke.
+
+Both half-strokes mirror each other for every pitch phase, so half a beat is integrated. It is split where the wing
+passes the vertical (sin(ωt+δ) = 0); each piece then runs from a stroke reversal to a pitch reversal, and its nodes
+crowd towards both ends, where Cφ → 1 and Cθ → ∞ put thin layers. Distances are measured from those ends, so that no
+digits are lost there in single precision.
+"""
+
+import functools
+import math
+
+import numpy as np
+
+from flapenv.aero.arrays import Real, as_arrays, as_numpy
+from flapenv.aero.checks import require_real
+from flapenv.aero.stroke import flap_speed, pitch_waveform
+
+SHARPEST_LAYER = 1e-5
+"""Layers thinner than this [rad] carry less than the tolerance and are not resolved further."""
+
+
+def time_nodes(flap_shape: Real, pitch_shape: Real, *, tolerance: float = 1e-9) -> int:
+    """Nodes per piece of a half-stroke for a relative error of the averages below `tolerance`.
+
+    Grows with the digits wanted and, slowly, with the sharpest layer w = min(√(1-Cφ²), 1/Cθ, 1): n ∝ w^(-0.21), fitted
+    to the measured convergence and held by a test.
+
+    Args:
+        flap_shape: Cφ, the largest of which counts [-].
+        pitch_shape: Cθ, the largest of which counts [-].
+        tolerance: relative error of both averages, in [1e-12, 0.1].
+
+    Returns:
+        The node count.
+    """
+    require_real("tolerance", tolerance, 1e-12, 0.1)
+    sharpest_flap = float(np.max(as_numpy(flap_shape)))
+    sharpest_pitch = float(np.max(as_numpy(pitch_shape)))
+    flap_layer = math.sqrt((1 - sharpest_flap) * (1 + sharpest_flap)) or 1.0  # the triangle itself has no layer
+    layer = max(min(flap_layer, 1 / max(sharpest_pitch, 1.0)), SHARPEST_LAYER)
+    return math.ceil(21 * layer**-0.21 * -math.log10(tolerance) / 6)
+
+
+@functools.lru_cache(maxsize=64)
+def _graded_rule(nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights on (0, 1): Gauss-Legendre in x, crowded to both ends by s = sin²(πx/2)."""
+    x, weights = np.polynomial.legendre.leggauss(nodes)
+    x = (x + 1) / 2
+    return np.sin(math.pi * x / 2) ** 2, weights / 2 * math.pi / 2 * np.sin(math.pi * x)
+
+
+def speed_averages(
+    flap_shape: Real, pitch_amplitude: Real, pitch_shape: Real, pitch_phase: Real, *, nodes: int
+) -> tuple[Real, Real]:
+    """⟨φ̇|φ̇| sin 2θ⟩/v̄² and ⟨|φ̇|³ cos² θ⟩/v̄³ with v̄ = ⟨|φ̇|⟩ = 4 f φmax: lift and power of the waveform alone.
+
+    With α = 90° - θ sgn φ̇ these are ⟨v² sin 2α⟩/v̄² and ⟨v³ sin² α⟩/v̄³; the triangle with a square pitch gives
+    sin 2α and sin² α.
+
+    Args:
+        flap_shape: Cφ [-], broadcast with the rest, shape (...).
+        pitch_amplitude: θmax [rad].
+        pitch_shape: Cθ [-].
+        pitch_phase: δ [rad].
+        nodes: per piece of the half-stroke, from `time_nodes`.
+
+    Returns:
+        The lift and the power average [-], shape (...).
+    """
+    xp, flap_shape, pitch_amplitude, pitch_shape, pitch_phase = as_arrays(
+        flap_shape, pitch_amplitude, pitch_shape, pitch_phase
+    )
+    flap_shape, pitch_amplitude, pitch_shape = (
+        value[..., None] for value in (flap_shape, pitch_amplitude, pitch_shape)
+    )
+    fractions, weights = _graded_rule(nodes)
+    if pitch_phase.dtype != fractions.dtype or xp is not np:
+        _, _, fractions, weights = as_arrays(pitch_phase, fractions, weights)
+    half_turns = xp.round(pitch_phase / math.pi)
+    sense = (1 - 2 * (half_turns % 2))[..., None]  # sign of θ after its reversal
+    before = (half_turns * math.pi - pitch_phase + math.pi / 2)[..., None]  # from stroke to pitch reversal
+    lift = power = 0.0
+    for length, sign in ((before, -sense), (math.pi - before, sense)):
+        speed = flap_speed(xp.sin(length * fractions), flap_shape) * (math.pi / 2)
+        pitch = pitch_amplitude * pitch_waveform(xp.sin(length * (1 - fractions)), pitch_shape)
+        share = length[..., 0] / math.pi
+        sine, cosine = xp.sin(pitch), xp.cos(pitch)
+        dynamic = speed * speed
+        lift = lift + share * sign[..., 0] * ((dynamic * sine * cosine) @ (2 * weights))
+        power = power + share * ((dynamic * speed * cosine * cosine) @ weights)
+    return lift, power
