@@ -1,0 +1,138 @@
+"""Action coordinates: strokes of a box as points of the cube [-1, 1]^n, shared by environments and optimisers."""
+
+from typing import Literal
+
+import numpy as np
+
+from flapenv.aero.checks import require_name
+from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.problem import StrokeBox
+
+Scaling = Literal["tip-speed", "log", "plain"]
+SCALINGS: tuple[Scaling, ...] = ("tip-speed", "log", "plain")
+
+LOG_FLOOR = 1e-6
+"""Where a logarithmic scale would run into its pole (Cφ = 1, Cθ = 0), it is shifted by this."""
+
+
+class StrokeCoordinates:
+    """The map between the free parameters of a box and the cube, one axis a free parameter, in the table's order.
+
+    Along an axis the parameter runs linearly, with its logarithm, or with the logarithm of its complement, as the
+    parameter table says. With "tip-speed" scaling the first axis is q = f φmax on a log scale over all that the box
+    allows, f = q/φmax, clipped to its own bounds: lift depends on q, and axes along (f, φmax) would leave the solution
+    on a curved ridge. "log" takes f itself on a log scale, "plain" takes everything linearly.
+    """
+
+    def __init__(self, box: StrokeBox, *, scaling: Scaling = "tip-speed") -> None:
+        """Prepare the map.
+
+        Args:
+            box: the bounds.
+            scaling: one of `SCALINGS`.
+
+        Raises:
+            ValueError: for an unknown scaling.
+        """
+        self.box = box
+        self.scaling = require_name("action_scaling", scaling, SCALINGS)
+        self.names = box.free
+        self._uses_tip_speed = scaling == "tip-speed" and {"frequency", "flap_amplitude"} <= set(self.names)
+
+    def __len__(self) -> int:
+        """Number of axes."""
+        return len(self.names)
+
+    @property
+    def axis_names(self) -> tuple[str, ...]:
+        """What each axis is; "tip_speed" stands for q = f φmax."""
+        return tuple("tip_speed" if n == "frequency" and self._uses_tip_speed else n for n in self.names)
+
+    def decode(
+        self, points: np.ndarray, reference_frequency: np.ndarray | float
+    ) -> tuple[dict[str, np.ndarray], np.ndarray]:
+        """Strokes at points of the cube; a point outside is moved to its nearest face.
+
+        Args:
+            points: shape (..., n), float32 or float64, finite.
+            reference_frequency: scalar or shape (...) [Hz].
+
+        Returns:
+            The stroke's fields by name, each of shape (...) and the points' type [SI units], and where anything
+            was clipped, shape (...) of bool.
+        """
+        inside = np.clip(points, -1, 1)
+        clipped = np.any(inside != points, axis=-1)
+        shape, dtype = points.shape[:-1], points.dtype
+        reference = np.asarray(reference_frequency, dtype=dtype)
+        values: dict[str, np.ndarray] = {}
+        for name in STROKE_PARAMETERS:
+            low, high = (np.asarray(bound, dtype=dtype) for bound in self.box.bounds(name, reference))
+            if name not in self.names:
+                values[name] = np.broadcast_to(low, shape)
+                continue
+            fraction = (inside[..., self.names.index(name)] + 1) / 2
+            if name == "frequency" and self._uses_tip_speed:
+                values[name] = fraction  # awaits φmax
+                continue
+            values[name] = np.clip(_between(fraction, low, high, self._scale(name)), low, high)
+        if self._uses_tip_speed:
+            amplitude = values["flap_amplitude"]
+            low, high = (np.asarray(bound, dtype=dtype) for bound in self.box.bounds("frequency", reference))
+            first, last = self.box.flap_amplitude
+            tip_speed = _between(values["frequency"], low * dtype.type(first), high * dtype.type(last), "log")
+            frequency = tip_speed / amplitude
+            values["frequency"] = np.clip(frequency, low, high)
+            slack = 8 * np.finfo(dtype).eps
+            clipped |= np.abs(values["frequency"] - frequency) > slack * frequency
+        return values, clipped
+
+    def encode(self, values: dict[str, np.ndarray], reference_frequency: np.ndarray | float) -> np.ndarray:
+        """Points of the cube for strokes, the inverse of `decode` inside the box.
+
+        Args:
+            values: the stroke's fields by name, each of shape (...) [SI units].
+            reference_frequency: scalar or shape (...) [Hz].
+
+        Returns:
+            Points, shape (..., n), clipped to the cube.
+        """
+        axes = []
+        for name in self.names:
+            low, high = self.box.bounds(name, reference_frequency)
+            value = values[name]
+            if name == "frequency" and self._uses_tip_speed:
+                first, last = self.box.flap_amplitude
+                value, low, high = value * values["flap_amplitude"], low * first, high * last
+            axes.append(np.clip(2 * _fraction(value, low, high, self._scale(name)) - 1, -1, 1))
+        return np.stack(np.broadcast_arrays(*axes), axis=-1) if axes else np.zeros((0,))
+
+    def _scale(self, name: str) -> str:
+        return "linear" if self.scaling == "plain" else STROKE_PARAMETERS[name].scale
+
+
+def _between(fraction: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str) -> np.ndarray:
+    """The value a fraction of the way from `low` to `high` along a scale."""
+    if scale == "linear":
+        return low + (high - low) * fraction
+    if scale == "log-complement":
+        return 1 - _between(fraction, 1 - low, 1 - high, "log")
+    shift = _shift(low, high)
+    start, stop = np.log(low + shift), np.log(high + shift)
+    return np.exp(start + (stop - start) * fraction) - shift
+
+
+def _fraction(value: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str) -> np.ndarray:
+    """The inverse of `_between`."""
+    if scale == "linear":
+        return (value - low) / (high - low)
+    if scale == "log-complement":
+        return _fraction(1 - value, 1 - low, 1 - high, "log")
+    shift = _shift(low, high)
+    return np.log((value + shift) / (low + shift)) / np.log((high + shift) / (low + shift))
+
+
+def _shift(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """What keeps a log scale off its pole: nothing, unless an end lies within `LOG_FLOOR` of zero."""
+    least = np.minimum(low, high)
+    return np.where(least < LOG_FLOOR, np.asarray(LOG_FLOOR, dtype=np.result_type(least)), 0).astype(least.dtype)

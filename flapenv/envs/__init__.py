@@ -1,0 +1,6 @@
+"""The environments. One step is one wingbeat in every one of them."""
+
+from flapenv.envs.hover import HoverEnv, HoverVectorEnv
+from flapenv.envs.registration import ENV_IDS, register_envs
+
+__all__ = ["ENV_IDS", "HoverEnv", "HoverVectorEnv", "register_envs"]

@@ -1,0 +1,224 @@
+"""What every batched environment of the family shares: autoreset written once, reset masks, action checks, infos."""
+
+from abc import abstractmethod
+from typing import Any
+
+import numpy as np
+from gymnasium import error, spaces
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from flapenv.aero.checks import allowed, require_count, require_real
+
+Info = dict[str, Any]
+RENDER_MODES = ("rgb_array",)
+
+
+def as_autoreset_mode(value: AutoresetMode | str) -> AutoresetMode:
+    """An `AutoresetMode` from itself, its name ("SAME_STEP") or its value ("SameStep").
+
+    Raises:
+        ValueError: for anything else.
+    """
+    for mode in AutoresetMode:
+        if value in (mode, mode.name, mode.value):
+            return mode
+    raise ValueError(f"autoreset_mode = {value!r} is unknown; {allowed(value, [m.name for m in AutoresetMode])}")
+
+
+def require_render_mode(value: str | None) -> str | None:
+    """`value` if it can be rendered.
+
+    Raises:
+        ValueError: for an unknown mode.
+    """
+    if value is not None and value not in RENDER_MODES:
+        raise ValueError(f"render_mode = {value!r} is unknown; {allowed(value, RENDER_MODES)}, or None")
+    return value
+
+
+def require_options(options: dict[str, Any] | None, known: tuple[str, ...]) -> dict[str, Any]:
+    """The reset options, all of them known.
+
+    Raises:
+        ValueError: for an unknown key.
+    """
+    options = dict(options or {})
+    for key in options:
+        if key not in known:
+            raise ValueError(f"reset option {key!r} = {options[key]!r} is unknown; {allowed(key, known)}")
+    return options
+
+
+class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
+    """A vector environment that computes all of its rows at once.
+
+    A member of the family says how episodes begin (`_begin`), how one wingbeat goes (`_beat`) and what is seen
+    (`_observe`); this class turns that into Gymnasium's three autoreset modes:
+
+    - NEXT_STEP: the step after an episode's end ignores that row's action, resets it and returns reward 0.
+    - SAME_STEP: the row is reset within its last step; its last observation and info are `final_obs`, `final_info`.
+    - DISABLED: rows that ended must be reset with `options={"reset_mask": mask}` before they step again.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 2}
+    reset_options: tuple[str, ...] = ()
+
+    def __init__(
+        self,
+        num_envs: int,
+        *,
+        single_observation_space: spaces.Box,
+        single_action_space: spaces.Box,
+        autoreset_mode: AutoresetMode | str,
+        render_mode: str | None,
+    ) -> None:
+        """Set the spaces and the mode; no episode has begun yet."""
+        self.num_envs = require_count("num_envs", num_envs)
+        self.autoreset_mode = as_autoreset_mode(autoreset_mode)
+        self.render_mode = require_render_mode(render_mode)
+        self.metadata = {**type(self).metadata, "autoreset_mode": self.autoreset_mode}
+        self.single_observation_space, self.single_action_space = single_observation_space, single_action_space
+        self.observation_space = batch_space(single_observation_space, num_envs)
+        self.action_space = batch_space(single_action_space, num_envs)
+        self._ended = np.ones(num_envs, dtype=bool)
+        self._begun = False
+
+    @abstractmethod
+    def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
+        """Begin an episode in the rows of `mask`; the reset info of all rows, as arrays."""
+
+    @abstractmethod
+    def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
+        """One wingbeat in the rows of `mask`: rewards, terminations, truncations and info of all rows, as arrays."""
+
+    @abstractmethod
+    def _observe(self) -> np.ndarray:
+        """What is seen now, a fresh array."""
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, Info]:
+        """Begin new episodes, in all rows or in those of `options["reset_mask"]`.
+
+        Args:
+            seed: seeds the one generator all rows draw from.
+            options: "reset_mask", an array of bool of shape (num_envs,), and the member's own options.
+
+        Returns:
+            Observations (num_envs, n) and infos, where `_key` masks the rows that have `key`.
+
+        Raises:
+            TypeError: for a seed or mask of another type.
+            ValueError: for an unknown option or a mask of another shape or without a True.
+        """
+        if seed is not None:
+            require_count("seed", seed, low=0)
+            seed = int(seed)
+        super().reset(seed=seed)
+        options = require_options(options, ("reset_mask", *self.reset_options))
+        mask = self._reset_mask(options.pop("reset_mask", None))
+        if not self._begun and not mask.all():
+            raise error.ResetNeeded("the first reset must be of all rows, without options['reset_mask']")
+        info = self._begin(mask, options)
+        self._ended[mask] = False
+        self._begun = True
+        return self._observe(), _masked(info, mask)
+
+    def step(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
+        """One wingbeat in every row, with the autoreset of the environment's mode.
+
+        Args:
+            actions: shape (num_envs, n), finite; values outside [-1, 1] are clipped and flagged in the infos.
+
+        Returns:
+            Observations, rewards, terminations, truncations, all of num_envs rows, and infos.
+
+        Raises:
+            TypeError: for actions that are not numbers.
+            ValueError: for actions of another shape, or with NaN or inf.
+            gymnasium.error.ResetNeeded: before the first reset, or where a row has ended and the mode is DISABLED.
+        """
+        if not self._begun:
+            raise error.ResetNeeded("call reset() before the first step()")
+        actions = self._checked(actions)
+        ended = self._ended.copy()
+        if self.autoreset_mode is AutoresetMode.DISABLED and ended.any():
+            raise error.ResetNeeded(
+                f"rows {np.flatnonzero(ended)[:8].tolist()} have ended; reset them with options={{'reset_mask': mask}}"
+            )
+        info: Info = {}
+        acting = ~ended
+        if acting.any():
+            rewards, terminations, truncations, beat_info = self._beat(actions, acting)
+            rewards = np.where(acting, rewards, 0.0).astype(np.float64)
+            terminations, truncations = terminations & acting, truncations & acting
+            info = _masked(beat_info, acting)
+        else:
+            rewards, none = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=bool)
+            terminations, truncations = none, none.copy()
+        finished = terminations | truncations
+        if self.autoreset_mode is AutoresetMode.SAME_STEP and finished.any():
+            final = {
+                "final_obs": self._observe(),
+                "_final_obs": finished.copy(),
+                "final_info": _masked(info, finished),
+                "_final_info": finished.copy(),
+            }
+            info = _merged(_masked(info, ~finished), _masked(self._begin(finished, {}), finished)) | final
+            finished = np.zeros_like(finished)
+        elif ended.any():
+            info = _merged(info, _masked(self._begin(ended, {}), ended))
+        self._ended = finished.copy()
+        return self._observe(), rewards, terminations, truncations, info
+
+    def _reset_mask(self, mask: Any) -> np.ndarray:
+        """All rows, or the checked mask."""
+        if mask is None:
+            return np.ones(self.num_envs, dtype=bool)
+        if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+            kind = mask.dtype if isinstance(mask, np.ndarray) else type(mask).__name__
+            raise TypeError(f"reset_mask of type {kind} is not allowed; allowed: a NumPy array of bool")
+        if mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(
+                f"reset_mask of shape {mask.shape} with {int(mask.sum())} True is not allowed; allowed: shape "
+                f"({self.num_envs},) with at least one True"
+            )
+        return mask.copy()
+
+    def _checked(self, actions: Any) -> np.ndarray:
+        """Actions as a float32 array of the right shape, finite."""
+        try:
+            array = np.asarray(actions)
+            array = array if array.dtype == np.float32 else array.astype(np.float64)
+        except (TypeError, ValueError):
+            raise TypeError(f"actions = {actions!r} are not real numbers; allowed: floats in [-1, 1]") from None
+        if array.shape != self.action_space.shape:
+            raise ValueError(f"actions of shape {array.shape} are not allowed; allowed: {self.action_space.shape}")
+        if not np.isfinite(array).all():
+            require_real("actions", array)
+        return np.clip(array, -2, 2).astype(np.float32)  # beyond ±1 still shows as clipped, and no cast overflows
+
+
+def _masked(info: Info, mask: np.ndarray) -> Info:
+    """Infos as Gymnasium's vector environments give them: each array beside `_key`, the rows that have it."""
+    masked: Info = {}
+    for key, value in info.items():
+        if not key.startswith("_"):
+            own = info.get(f"_{key}")
+            masked[key] = value
+            masked[f"_{key}"] = mask.copy() if own is None else mask & own
+    return masked
+
+
+def _merged(first: Info, second: Info) -> Info:
+    """Two masked infos of different rows as one."""
+    merged = dict(first)
+    for key, value in second.items():
+        if key.startswith("_"):
+            continue
+        mask = second[f"_{key}"]
+        if key in first:
+            merged[key] = np.where(mask, value, first[key])
+            merged[f"_{key}"] = mask | first[f"_{key}"]
+        else:
+            merged[key], merged[f"_{key}"] = value, mask
+    return merged

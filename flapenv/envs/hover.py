@@ -1,0 +1,311 @@
+"""flapenv/Hover-v0: one step is one wingbeat; hover with the least power. Native vector env, and its batch of one."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium import spaces
+from gymnasium.vector import AutoresetMode
+
+from flapenv.aero.checks import require_name
+from flapenv.aero.stroke import Stroke
+from flapenv.coordinates import Scaling, StrokeCoordinates
+from flapenv.envs.batch import BatchEnv, Info
+from flapenv.insects import INSECTS, Insect, as_insect, load_insect
+from flapenv.objective import HoverObjective, Score
+from flapenv.optimum import optimum
+from flapenv.performance import yardstick
+from flapenv.problem import PROBLEMS, HoverProblem, as_problem
+
+InsectChoice = str | Insect | Mapping[str, Any] | Sequence[Any]
+ProblemChoice = str | HoverProblem | Mapping[str, Any]
+OBSERVATION_LIMIT = 5.0
+DEFAULT_PROBLEM = next(iter(PROBLEMS))
+
+
+def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infeasible: bool) -> tuple[Insect, ...]:
+    """The insects an environment draws from, with a warning about every one that cannot hover in the box.
+
+    Args:
+        choice: "all", a name of `INSECTS`, an `Insect` or the dict of one, or several of these.
+        problem: the problem, which decides about feasibility.
+        include_infeasible: whether "all" keeps the insects that no stroke of the box can lift.
+
+    Raises:
+        TypeError: for a choice of another kind.
+        ValueError: for an unknown name, no insect at all, or "all" where none is feasible.
+    """
+    if isinstance(choice, str):
+        require_name("insect", choice, ("all", *INSECTS))
+    everyone = choice == "all"
+    if everyone:
+        insects = tuple(load_insect(name) for name in INSECTS)
+    elif isinstance(choice, Sequence) and not isinstance(choice, str):
+        insects = tuple(as_insect(one) for one in choice)
+    else:
+        insects = (as_insect(choice),)
+    if not insects:
+        raise ValueError("insect = [] is not allowed; allowed: at least one insect")
+    infeasible = {insect.name: optimum(insect, problem) for insect in insects}
+    infeasible = {name: best for name, best in infeasible.items() if not best.feasible}
+    if infeasible:
+        margins = ", ".join(f"{name} (largest {best.max_weight_support:.3f})" for name, best in infeasible.items())
+        dropped = everyone and not include_infeasible
+        fate = "left out" if dropped else "kept; the aim is their largest weight support"
+        gym.logger.warn(f"no stroke of the box carries the weight of {margins}: {fate}")
+        if dropped:
+            insects = tuple(insect for insect in insects if insect.name not in infeasible)
+    if not insects:
+        raise ValueError("insect = 'all' leaves no insect: none can hover in the box; see include_infeasible=True")
+    return insects
+
+
+class HoverVectorEnv(BatchEnv):
+    """Batched `HoverEnv`, which describes actions, observations and rewards: one step is one wingbeat in every row.
+
+    Rows are independent but for the one generator that draws their insects, in row order, whatever the others do.
+    """
+
+    reset_options = ("insect",)
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        *,
+        insect: InsectChoice = "all",
+        problem: ProblemChoice = DEFAULT_PROBLEM,
+        include_infeasible: bool = False,
+        action_scaling: Scaling = "tip-speed",
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        dtype: str = "float32",
+        render_mode: str | None = None,
+    ) -> None:
+        """Solve the references of all insects (once per process) and set up the spaces.
+
+        Args:
+            num_envs: rows.
+            insect: "all", a name, an `Insect`, the dict of one, or a list of these; drawn uniformly at each reset.
+            problem: a name of `PROBLEMS`, a `HoverProblem` or the dict of one.
+            include_infeasible: whether "all" keeps insects that no stroke of the box lifts.
+            action_scaling: how actions run over the box; see `StrokeCoordinates`.
+            autoreset_mode: an `AutoresetMode` or its name.
+            dtype: "float32" or "float64", of the computation; observations and actions are float32 always.
+            render_mode: "rgb_array" or None.
+
+        Raises:
+            TypeError: for an argument of another kind.
+            ValueError: for an unknown name or a value outside its range.
+        """
+        self.problem = as_problem(problem)
+        self.insects = choose_insects(insect, self.problem, include_infeasible=include_infeasible)
+        self.dtype = np.dtype(require_name("dtype", str(dtype), ("float32", "float64")))
+        self.coordinates = StrokeCoordinates(self.problem.box, scaling=action_scaling)
+        if not len(self.coordinates):
+            raise ValueError("box fixes every parameter; allowed: at least one with lower < upper")
+        self.objective = HoverObjective(self.insects, self.problem, self.dtype)
+
+        cases = self.objective.cases
+        weight_support, self._felt_power = yardstick(cases, self.problem.model)
+        r1_hat = np.array([one.wing.r1_hat for one in self.insects])
+        self._features = np.stack(
+            [cases.aspect_ratio - 4, (r1_hat - 0.51) / 0.04, np.log(weight_support)], axis=-1
+        ).astype(np.float32)
+        self._names = np.array([one.name for one in self.insects], dtype=object)
+        self._frequency = np.asarray(cases.reference_frequency, dtype=self.dtype)
+
+        super().__init__(
+            num_envs,
+            single_observation_space=spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (6,), np.float32),
+            single_action_space=spaces.Box(-1.0, 1.0, (len(self.coordinates),), np.float32),
+            autoreset_mode=autoreset_mode,
+            render_mode=render_mode,
+        )
+        self._insect = np.zeros(num_envs, dtype=np.intp)
+        self._felt = np.zeros((num_envs, 3), dtype=np.float32)  # last Λ - 1, last log P*/P*_felt, fraction left
+        self._stroke: dict[str, np.ndarray] | None = None
+        self._beaten = np.zeros(num_envs, dtype=np.intp)  # the insect of each row's last wingbeat
+
+    def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
+        drawn = self.np_random.integers(len(self.insects), size=self.num_envs)
+        chosen = options.get("insect")
+        if chosen is not None:
+            drawn = self._chosen(chosen)
+        self._insect = np.where(mask, drawn, self._insect)
+        self._felt[mask] = (0.0, 0.0, 1.0)
+        return {"insect": self._names[self._insect]}
+
+    def _chosen(self, chosen: Any) -> np.ndarray:
+        """Row numbers of insects asked for by name, one for all rows or one for each."""
+        names = [chosen] * self.num_envs if isinstance(chosen, str) else list(chosen)
+        if len(names) != self.num_envs:
+            raise ValueError(f"reset option insect has {len(names)} names; allowed: one, or one for each row")
+        own = list(self._names)
+        return np.array([own.index(require_name("reset option insect", name, own)) for name in names], dtype=np.intp)
+
+    def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
+        strokes, clipped = self.coordinates.decode(actions.astype(self.dtype), self._frequency[self._insect])
+        score = self.objective.score(self._insect, strokes)
+        felt = np.stack(
+            [
+                score.weight_support - 1,
+                np.log(score.specific_power / self._felt_power[self._insect]),
+                np.zeros(self.num_envs),
+            ],
+            axis=-1,
+        )
+        self._felt[mask] = felt[mask]
+        self._stroke, self._beaten = strokes, self._insect
+        return score.reward, mask.copy(), np.zeros(self.num_envs, dtype=bool), self._info(score, strokes, clipped)
+
+    def _info(self, score: Score, strokes: dict[str, np.ndarray], clipped: np.ndarray) -> Info:
+        return {
+            "insect": self._names[self._insect],
+            "weight_support": score.weight_support,
+            "specific_power": score.specific_power,
+            "lift_deficit": score.lift_deficit,
+            "reward/power": score.power_term,
+            "reward/lift": score.lift_term,
+            **{f"stroke/{name}": value for name, value in strokes.items()},
+            "clipped": clipped,
+            "bound_gap": score.bound_gap,
+            "optimality_gap": score.optimality_gap,
+            "_optimality_gap": score.feasible,
+        }
+
+    def _observe(self) -> np.ndarray:
+        seen = np.concatenate([self._features[self._insect], self._felt], axis=1)
+        return np.clip(seen, -OBSERVATION_LIMIT, OBSERVATION_LIMIT)
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """The last wingbeat of every row as pictures (height, width, 3) of uint8; None without a render mode."""
+        if self.render_mode is None:
+            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+            return None
+        from flapenv.drawing import wingbeat_image
+
+        return tuple(wingbeat_image(*self._last_beat(row), self.problem.model) for row in range(self.num_envs))
+
+    def _last_beat(self, row: int) -> tuple[Insect, Stroke]:
+        """Insect and stroke of a row's last wingbeat; the insect's own stroke before the first."""
+        if self._stroke is None:
+            insect = self.insects[self._insect[row]]
+            return insect, insect.stroke
+        values = {name: float(value[row]) for name, value in self._stroke.items()}
+        return self.insects[self._beaten[row]], Stroke(**values)
+
+
+class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
+    """One step is one wingbeat: choose its kinematics, hover with the least aerodynamic power.
+
+    ## Description
+    A pair of wings beats in a horizontal stroke plane with the waveforms (2.1), (2.2) of Nabawy & Crowther (2014, Part
+    II). Their quasi-steady model gives the weight support Λ and the specific power P*. Each episode is one wingbeat
+    of one insect; its optimum is known, with a proven lower bound (`flapenv.optimum`).
+
+    ## Action space
+    `Box(-1, 1, (n,), float32)`, one row a free parameter, fixed ones dropped. In the default problem:
+
+    | Num | Name | Symbol | Unit | -1 | +1 | Scale |
+    |---|---|---|---|---|---|---|
+    | 0 | tip speed, q = f φmax; f = q/φmax is clipped to [0.5, 1.5] × the reference frequency | q | rad Hz | \
+0.5 f_ref 40° | 1.5 f_ref 90° | log |
+    | 1 | flap_amplitude | φmax | rad | 40° | 90° | linear |
+    | 2 | flap_shape | Cφ | - | 0.01 | 0.99 | log(1 - Cφ) |
+    | 3 | pitch_shape | Cθ | - | 0.1 | 10 | log |
+    | 4 | pitch_amplitude | θmax | rad | 45° | 65° | linear |
+    | 5 | pitch_phase | δ | rad | 60° | 120° | linear |
+
+    Finite actions outside the box are clipped and flagged in `info["clipped"]`; NaN and inf are refused.
+
+    ## Observation space
+    `Box(-5, 5, (6,), float32)`. Nothing in it needs the optimum or names the insect.
+
+    | Num | Observation |
+    |---|---|
+    | 0 | AR - 4, aspect ratio of one wing |
+    | 1 | (r̂₁ - 0.51)/0.04, centre of area |
+    | 2 | log Λ_ref, weight support at the reference frequency, φmax = 60°, constant speed and α = 35° |
+    | 3 | last Λ - 1; 0 at the start |
+    | 4 | last log(P*/P*_felt), P*_felt from the same yardstick stroke; 0 at the start |
+    | 5 | fraction of the episode left |
+
+    ## Rewards
+    -P*/P*_ref - λ max(0, 1 - Λ), not below -20. P*_ref is the proven lower bound, so the best return is about -1.045 in
+    the default problem. λ exceeds the multiplier of the constrained optimum, so that the reward's optimum is the
+    constrained optimum itself. Terms: `info["reward/power"]`, `info["reward/lift"]`.
+
+    ## Starting state
+    An insect drawn uniformly, or `options={"insect": name}`.
+
+    ## Episode end
+    Terminates after one wingbeat; never truncates. A discount factor has nothing to act on.
+
+    ## Arguments
+    `insect`, `problem`, `include_infeasible`, `action_scaling`, `dtype`, `render_mode` as in `HoverVectorEnv`.
+
+    ## Version history
+    - v0: first version.
+    """
+
+    metadata: dict[str, Any] = dict(BatchEnv.metadata)
+
+    def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
+        """Make a batch of one.
+
+        Args:
+            render_mode: "rgb_array" or None.
+            **arguments: of `HoverVectorEnv`, but for num_envs and autoreset_mode.
+
+        Raises:
+            TypeError: for an unknown argument or one of another kind.
+            ValueError: for an unknown name or a value outside its range.
+        """
+        for name in ("num_envs", "autoreset_mode"):
+            if name in arguments:
+                raise TypeError(f"{name} = {arguments[name]!r} is not allowed here; it is HoverVectorEnv's")
+        self.batch = HoverVectorEnv(
+            1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **arguments
+        )
+        self.render_mode = self.batch.render_mode
+        self.observation_space = self.batch.single_observation_space
+        self.action_space = self.batch.single_action_space
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, Info]:
+        """Begin an episode; `options={"insect": name}` chooses the insect."""
+        super().reset(seed=seed)
+        self.batch.np_random = self.np_random
+        observation, info = self.batch.reset(options=options)
+        return observation[0], _first_row(info)
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
+        """One wingbeat, which ends the episode.
+
+        Args:
+            action: shape (n,), finite.
+
+        Raises:
+            TypeError: for an action that is not numbers.
+            ValueError: for an action of another shape, or with NaN or inf.
+            gymnasium.error.ResetNeeded: before a reset.
+        """
+        shape = np.shape(action)
+        if shape != self.action_space.shape:
+            raise ValueError(f"action of shape {shape} is not allowed; allowed: {self.action_space.shape}")
+        observation, reward, terminated, truncated, info = self.batch.step(np.asarray(action)[None])
+        return observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first_row(info)
+
+    def render(self) -> np.ndarray | None:  # type: ignore[override]
+        """The last wingbeat as a picture (height, width, 3) of uint8; None without a render mode."""
+        frames = self.batch.render()
+        return None if frames is None else frames[0]
+
+
+def _first_row(info: Info) -> Info:
+    """The infos of a batch of one as plain Python values; None where the row has no value."""
+    row: Info = {}
+    for key, value in info.items():
+        if not key.startswith("_"):
+            element = value[0]
+            row[key] = (element.item() if isinstance(element, np.generic) else element) if info[f"_{key}"][0] else None
+    return row

@@ -1,0 +1,152 @@
+"""The reward and the gaps: one batched objective for environments, agents and optimisers."""
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from flapenv.aero.checks import record
+from flapenv.aero.wingbeat import time_nodes
+from flapenv.insects import Insect
+from flapenv.optimum import Optimum, optimum
+from flapenv.performance import HoverCase, hover_averages, hover_case, stack_cases
+from flapenv.problem import HoverProblem
+
+LEAST_PENALTY = 3.0
+"""λ "auto" is at least this, so that an agent that explores feels missing lift."""
+INFEASIBLE_PENALTY = 10.0
+"""λ where no stroke carries the weight and the aim is the largest weight support."""
+LEAST_GAP_WEIGHT = 10.0
+"""The gap charges missing weight support at least this many times its fraction."""
+QUADRATURE_TOLERANCE = 1e-6
+"""Of the averages an environment computes, a little above single precision."""
+
+
+@record
+class Score:
+    """How a batch of strokes did; arrays of shape (n,).
+
+    Attributes:
+        weight_support: Λ [-].
+        specific_power: P* [W/kg].
+        lift_deficit: max(0, 1 - Λ) [-].
+        power_term: -P*/P*_ref [-].
+        lift_term: -λ max(0, 1 - Λ) [-].
+        reward: the sum of both terms, not below the problem's floor [-].
+        bound_gap: P* over the proven bound, minus one, plus the charge for missing lift [-].
+        optimality_gap: P*/P*_opt - 1 + c max(0, 1 - Λ) [-]; 0 where infeasible, see `feasible`.
+        feasible: whether the insect of the row can hover in the box at all.
+    """
+
+    weight_support: np.ndarray
+    specific_power: np.ndarray
+    lift_deficit: np.ndarray
+    power_term: np.ndarray
+    lift_term: np.ndarray
+    reward: np.ndarray
+    bound_gap: np.ndarray
+    optimality_gap: np.ndarray
+    feasible: np.ndarray
+
+
+class HoverObjective:
+    """The exact-penalty objective -P*/P*_ref - λ max(0, 1-Λ) for a set of insects in one problem.
+
+    P*_ref is each insect's proven lower bound; λ exceeds the multiplier of its constrained optimum, which makes the
+    maximum of the reward the constrained optimum itself (an exact penalty; a quadratic one would settle short of the
+    weight). Optima are solved when the objective is made, once per process; scoring solves nothing.
+    """
+
+    def __init__(self, insects: Sequence[Insect], problem: HoverProblem, dtype: Any = np.float64) -> None:
+        """Solve the references of every insect.
+
+        Args:
+            insects: at least one.
+            problem: the box, the model and the reward's weights.
+            dtype: of the arrays that `score` computes with.
+        """
+        self.insects, self.problem, self.dtype = tuple(insects), problem, np.dtype(dtype)
+        self.optima: tuple[Optimum, ...] = tuple(optimum(insect, problem) for insect in self.insects)
+        self.cases = stack_cases([hover_case(insect, problem.model) for insect in self.insects])
+        self.nodes = time_nodes(problem.box.flap_shape[1], problem.box.pitch_shape[1], tolerance=QUADRATURE_TOLERANCE)
+
+        feasible = np.array([best.feasible for best in self.optima])
+        bound = np.array([best.lower_bound for best in self.optima])
+        best_power = np.array([best.specific_power for best in self.optima])
+        multiplier = np.array([best.multiplier for best in self.optima])
+        self.lift_penalty = self._lift_penalty(feasible, multiplier / bound)
+        charge = np.where(np.isfinite(multiplier), multiplier, 0.0)
+        self._reference = {
+            "bound": bound,
+            "optimum": np.where(feasible, best_power, bound),
+            "penalty": self.lift_penalty,
+            "bound_charge": np.maximum(LEAST_GAP_WEIGHT, 2 * charge / bound),
+            "charge": np.maximum(LEAST_GAP_WEIGHT, 2 * charge / best_power),
+        }
+        self._reference = {name: value.astype(self.dtype) for name, value in self._reference.items()}
+        self._feasible = feasible
+
+    def _lift_penalty(self, feasible: np.ndarray, relative_multiplier: np.ndarray) -> np.ndarray:
+        """λ of every insect, in units of its reference power."""
+        wanted = self.problem.lift_penalty
+        binding = feasible & np.isfinite(relative_multiplier)
+        if wanted == "auto":
+            exact = np.maximum(LEAST_PENALTY, 2 * np.where(binding, relative_multiplier, 0.0))
+            return np.where(binding, exact, INFEASIBLE_PENALTY)
+        for insect, multiplier in zip(self.insects, np.where(binding, relative_multiplier, 0.0), strict=True):
+            if wanted < multiplier:
+                warnings.warn(
+                    f"lift_penalty = {wanted:g} is below the multiplier {multiplier:.3g} of {insect.name}: the "
+                    "reward's optimum will not carry the weight",
+                    stacklevel=4,
+                )
+        return np.full(len(self.insects), float(wanted))
+
+    def rows(self, index: np.ndarray) -> HoverCase:
+        """The numbers of the insects at `index`, as arrays of the objective's type."""
+        return self.cases.rows(index, self.dtype)
+
+    def score(self, index: np.ndarray, strokes: dict[str, np.ndarray]) -> Score:
+        """Score one stroke for each row.
+
+        Args:
+            index: which insect each row is, shape (n,).
+            strokes: the stroke's fields by name, each of shape (n,), inside the box.
+
+        Returns:
+            Arrays of shape (n,).
+        """
+        weight_support, specific_power = hover_averages(
+            self.rows(index), self.problem.model, **strokes, nodes=self.nodes
+        )
+        reference = {name: value[index] for name, value in self._reference.items()}
+        feasible = self._feasible[index]
+        deficit = np.maximum(0, 1 - weight_support)
+        power_term = -specific_power / reference["bound"]
+        lift_term = -reference["penalty"] * deficit
+        gap = specific_power / reference["optimum"] - 1 + reference["charge"] * deficit
+        return Score(
+            weight_support=weight_support,
+            specific_power=specific_power,
+            lift_deficit=deficit,
+            power_term=power_term,
+            lift_term=lift_term,
+            reward=np.maximum(power_term + lift_term, self.problem.reward_floor),
+            bound_gap=-power_term - 1 + reference["bound_charge"] * deficit,
+            optimality_gap=np.where(feasible, gap, 0),
+            feasible=feasible,
+        )
+
+    def gap(self, number: int, weight_support: float, specific_power: float) -> float | None:
+        """The gap of one evaluated stroke of insect `number` to its optimum [-]; None where it is infeasible."""
+        best = self.optima[number]
+        if not best.feasible:
+            return None
+        charge = 2 * best.multiplier / best.specific_power if math.isfinite(best.multiplier) else 0.0
+        return (
+            specific_power / best.specific_power
+            - 1
+            + max(LEAST_GAP_WEIGHT, charge) * max(0.0, 1 - weight_support)
+        )

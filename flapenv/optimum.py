@@ -1,0 +1,251 @@
+"""The least power that hovers: a proven lower bound, and the best stroke of the box found and verified.
+
+The bound holds for the paper's coefficients (2.7), (2.12), no profile drag, "elastic" power, a horizontal stroke
+plane, and every waveform φ(t), θ(t) within the limits stated; the proofs are in docs/optimum.md.
+"""
+
+import functools
+import math
+from typing import Literal
+
+import numpy as np
+
+from flapenv.aero.checks import record
+from flapenv.aero.stroke import Stroke
+from flapenv.aero.wingbeat import time_nodes
+from flapenv.coordinates import StrokeCoordinates
+from flapenv.insects import Insect, as_insect
+from flapenv.performance import HoverCase, evaluate_by_blade_element, hover_averages, hover_case, lift_constant
+from flapenv.problem import HoverProblem, as_problem
+
+SAMPLES, STARTS = 512, 5
+"""Strokes drawn over the box, and the best of them from which the search starts."""
+STEP = 1e-4
+"""Of the central differences, in units of the cube; the averages are good to 1e-10."""
+WEIGHT_TOLERANCE = 1e-7
+"""Weight support short of one by less than this counts as carried."""
+
+
+@record
+class Optimum:
+    """The least power for hovering within a box.
+
+    Attributes:
+        insect: its name.
+        feasible: whether any stroke of the box carries the weight.
+        stroke: the best stroke of the box; the one with the largest lift where none carries the weight.
+        weight_support: Λ of that stroke [-].
+        specific_power: P* of that stroke [W/kg].
+        lower_bound: proven: no stroke or free waveform in scope hovers with less [W/kg].
+        max_weight_support: Λ_max, the largest Λ in the box [-].
+        multiplier: dP*/dΛ of the optimum, what a unit of weight support costs [W/kg]; 0 where the weight does not
+            bind, inf at the limit of lift.
+        active_bounds: "lower" or "upper" by the names of the parameters that lie on a bound.
+        oracle_weight_support: Λ of the stroke by the refined blade-element oracle [-].
+        oracle_specific_power: P* by the same [W/kg].
+        wingbeats: strokes evaluated by the search.
+    """
+
+    insect: str
+    feasible: bool
+    stroke: Stroke
+    weight_support: float
+    specific_power: float
+    lower_bound: float
+    max_weight_support: float
+    multiplier: float
+    active_bounds: dict[str, str]
+    oracle_weight_support: float
+    oracle_specific_power: float
+    wingbeats: int
+
+    @property
+    def gap_to_bound(self) -> float:
+        """P* over the lower bound, minus one [-]."""
+        return self.specific_power / self.lower_bound - 1
+
+
+def lower_bound(case: HoverCase, problem: HoverProblem) -> np.ndarray | float:
+    """Least P* that any waveform within the limits of the problem can hover with, proven [W/kg].
+
+    With A_L = Λ/⟨v² sin 2α⟩ and A_P = P*/⟨v³ sin² α⟩ at the largest C_T of the box, the larger of
+
+        A_P h(α_min) A_L^(-1.5),  h(α) = sin² α/(sin 2α)^1.5     for α_min <= α(t) <= 180° - α_min, any speed;
+        A_P/(4 A_L² v̄_max)                                       for any α(t), mean speed up to v̄_max = 4 f φmax.
+
+    Both decrease with C_T, which grows with φmax and with f, so its largest value in the box serves every stroke.
+
+    Args:
+        case: one insect's numbers or several (array fields).
+        problem: the box and the model.
+
+    Returns:
+        The bound, of the case's shape.
+    """
+    amplitude = problem.box.flap_amplitude[1]
+    speed = 4 * problem.box.bounds("frequency", case.reference_frequency)[1] * amplitude
+    constant = lift_constant(case, problem.model, speed, amplitude)
+    lift_factor = case.lift_scale * constant
+    power_factor = 2 * case.power_scale * constant
+    alpha = problem.min_angle_of_attack
+    angle_bound = power_factor * lift_factor**-1.5 * 2**-1.5 * math.sqrt(math.tan(alpha)) / math.cos(alpha)
+    speed_bound = power_factor / (4 * lift_factor**2 * speed)
+    return np.maximum(angle_bound, speed_bound)
+
+
+def optimum(insect: Insect | str, problem: HoverProblem | str | None = None) -> Optimum:
+    """The least power with which an insect can hover in a problem's box, solved once per (insect, problem).
+
+    Args:
+        insect: one insect (scalar fields) or a name of `INSECTS`.
+        problem: a `HoverProblem` or a name of `PROBLEMS`; problem A where None.
+
+    Returns:
+        The bound, the best stroke and how it was verified. An infeasible box comes back with feasible=False and
+        Λ_max, never as an error.
+
+    Raises:
+        TypeError: for arguments of another kind, or an insect with array fields.
+        ValueError: for an unknown name.
+
+    Source: bounds by Jensen's and Cauchy-Schwarz' inequalities (docs/optimum.md); stroke by SLSQP from several starts.
+    """
+    insect, problem = as_insect(insect), as_problem(problem)
+    if np.ndim(insect.mass) or np.ndim(insect.wing.length) or np.ndim(insect.stroke.frequency):
+        raise TypeError("insect has array fields; allowed: one insect with scalar fields")
+    return _solve(insect, problem)
+
+
+@functools.lru_cache(maxsize=1024)
+def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
+    """Search, then verify."""
+    search = _Search(insect, problem)
+    samples = search.samples()
+    weight, power = search.evaluate(samples)
+    best_lift = search.minimise("lift", samples[np.argsort(-weight)[:STARTS]])
+    max_weight_support = float(search.evaluate(best_lift)[0])
+    feasible = max_weight_support >= 1 - WEIGHT_TOLERANCE
+    point = best_lift
+    if feasible:
+        merit = np.log(power) + 4 * np.maximum(0, 1 - weight)
+        starts = np.concatenate([samples[np.argsort(merit)[: STARTS - 1]], best_lift[None]])
+        point = search.minimise("power", starts)
+    weight_support, specific_power = (float(value) for value in search.evaluate(point))
+    stroke = search.stroke(point)
+    checked = evaluate_by_blade_element(
+        insect, stroke, strips=8, steps=40_000, spacing="gauss-jacobi", **vars(problem.model)
+    )
+    return Optimum(
+        insect=insect.name,
+        feasible=feasible,
+        stroke=stroke,
+        weight_support=weight_support,
+        specific_power=specific_power,
+        lower_bound=float(lower_bound(search.case, problem)),
+        max_weight_support=max(max_weight_support, weight_support),
+        multiplier=search.multiplier(point) if feasible else math.inf,
+        active_bounds=search.active_bounds(stroke),
+        oracle_weight_support=checked[0],
+        oracle_specific_power=checked[1],
+        wingbeats=search.wingbeats,
+    )
+
+
+class _Search:
+    """Multi-start SLSQP over the box's cube, with batched central differences."""
+
+    def __init__(self, insect: Insect, problem: HoverProblem) -> None:
+        self.problem, self.case = problem, hover_case(insect, problem.model)
+        self.coordinates = StrokeCoordinates(problem.box, scaling="log")
+        self.nodes = time_nodes(problem.box.flap_shape[1], problem.box.pitch_shape[1])
+        self.wingbeats = 0
+        self._last: tuple[np.ndarray, tuple[float, float, np.ndarray, np.ndarray]] | None = None
+
+    def samples(self) -> np.ndarray:
+        """Points spread over the cube, its middle among them."""
+        size = (SAMPLES, len(self.coordinates))
+        points = np.random.default_rng(0).uniform(-1, 1, size)
+        points[0] = 0.0
+        return points
+
+    def evaluate(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Λ and P* at points of shape (..., n)."""
+        values, _ = self.coordinates.decode(points, self.case.reference_frequency)
+        self.wingbeats += math.prod(points.shape[:-1])
+        return hover_averages(self.case, self.problem.model, **values, nodes=self.nodes)
+
+    def stroke(self, point: np.ndarray) -> Stroke:
+        """The stroke at a point."""
+        values, _ = self.coordinates.decode(point, self.case.reference_frequency)
+        return Stroke(**{name: float(value) for name, value in values.items()})
+
+    def local(self, point: np.ndarray) -> tuple[float, float, np.ndarray, np.ndarray]:
+        """Λ, P* and their gradients along the axes at one point, in one batch; one-sided on the faces of the cube."""
+        if self._last is None or not np.array_equal(self._last[0], point):
+            offsets = STEP * np.eye(len(self.coordinates))
+            ahead, behind = np.clip(point + offsets, -1, 1), np.clip(point - offsets, -1, 1)
+            weight, power = self.evaluate(np.concatenate([point[None], ahead, behind]))
+            width = np.diagonal(ahead - behind)
+            by_weight, by_power = (np.subtract(*np.split(value[1:], 2)) / width for value in (weight, power))
+            self._last = point.copy(), (float(weight[0]), float(power[0]), by_weight, by_power)
+        return self._last[1]
+
+    def minimise(self, goal: Literal["power", "lift"], starts: np.ndarray) -> np.ndarray:
+        """The point of least log P* with Λ >= 1 ("power") or of largest Λ ("lift") over the ends of all starts."""
+        if not len(self.coordinates):
+            return np.zeros(0)
+        from scipy.optimize import minimize
+
+        def value(point: np.ndarray) -> float:
+            weight, power, _, _ = self.local(point)
+            return math.log(power) if goal == "power" else -weight
+
+        def slope(point: np.ndarray) -> np.ndarray:
+            _, power, by_weight, by_power = self.local(point)
+            return by_power / power if goal == "power" else -by_weight
+
+        hover = {
+            "type": "ineq",
+            "fun": lambda point: self.local(point)[0] - 1,
+            "jac": lambda point: self.local(point)[2],
+        }
+        best, best_value = starts[0], math.inf
+        for start in starts:
+            found = minimize(
+                value,
+                start,
+                jac=slope,
+                bounds=[(-1.0, 1.0)] * len(start),
+                constraints=[hover] if goal == "power" else [],
+                method="SLSQP",
+                options={"maxiter": 200, "ftol": 1e-12},
+            )
+            point = np.clip(found.x, -1, 1)
+            carried = goal == "lift" or self.local(point)[0] >= 1 - WEIGHT_TOLERANCE
+            if carried and value(point) < best_value:
+                best, best_value = point, value(point)
+        return best
+
+    def multiplier(self, point: np.ndarray) -> float:
+        """dP*/dΛ from stationarity along the axes that do not lie on a face."""
+        if not len(self.coordinates):
+            return math.inf
+        weight, _, by_weight, by_power = self.local(point)
+        if weight > 1 + 1e-6:
+            return 0.0
+        inner = np.abs(point) < 1 - 1e-6
+        lift = by_weight[inner]
+        strength = float(lift @ lift)
+        return float(lift @ by_power[inner]) / strength if strength > 1e-12 else math.inf
+
+    def active_bounds(self, stroke: Stroke) -> dict[str, str]:
+        """Which parameters lie on a bound."""
+        active = {}
+        for name in self.coordinates.names:
+            low, high = self.problem.box.bounds(name, self.case.reference_frequency)
+            value, slack = getattr(stroke, name), 1e-5 * (high - low)
+            if value >= high - slack:
+                active[name] = "upper"
+            elif value <= low + slack:
+                active[name] = "lower"
+        return active

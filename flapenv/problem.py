@@ -1,0 +1,165 @@
+"""What is being asked: which stroke parameters are free and within what box, under which model, at what price."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any, Literal
+
+import numpy as np
+
+from flapenv.aero.arrays import Real
+from flapenv.aero.checks import record, require_name, require_real
+from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.performance import HoverModel
+
+Interval = tuple[float, float]
+
+
+@record
+class StrokeBox:
+    """The box a stroke is sought in, by the names of `Stroke`'s fields.
+
+    Each bound is a pair (lower, upper) or one number, which fixes the parameter.
+
+    Attributes:
+        frequency_ratio: f over the insect's reference frequency [-]; not used where `frequency` is given.
+        frequency: f [Hz], in place of `frequency_ratio`.
+        flap_amplitude: φmax [rad].
+        flap_shape: Cφ [-].
+        pitch_shape: Cθ [-].
+        pitch_amplitude: θmax [rad]; its upper bound is 90° minus the smallest angle of attack allowed.
+        pitch_phase: δ [rad].
+
+    Raises:
+        TypeError: for an unknown parameter or a bound that is not a number or a pair.
+        ValueError: for lower > upper, or a bound outside the parameter's valid range.
+    """
+
+    frequency_ratio: Interval = STROKE_PARAMETERS["frequency"].box
+    frequency: Interval | None = None
+    flap_amplitude: Interval = STROKE_PARAMETERS["flap_amplitude"].box
+    flap_shape: Interval = STROKE_PARAMETERS["flap_shape"].box
+    pitch_shape: Interval = STROKE_PARAMETERS["pitch_shape"].box
+    pitch_amplitude: Interval = STROKE_PARAMETERS["pitch_amplitude"].box
+    pitch_phase: Interval = STROKE_PARAMETERS["pitch_phase"].box
+
+    def __post_init__(self) -> None:
+        """Bring every bound to a checked pair of floats."""
+        for field, value in vars(self).copy().items():
+            if field == "frequency" and value is None:
+                continue
+            object.__setattr__(self, field, _interval(field, value))
+
+    def bounds(self, name: str, reference_frequency: Real) -> tuple[Real, Real]:
+        """Lower and upper bound of a stroke parameter [its SI unit], the frequency for the given reference [Hz]."""
+        if name != "frequency":
+            low, high = getattr(self, name)
+            return low, high
+        if self.frequency is not None:
+            return self.frequency
+        low, high = self.frequency_ratio
+        return low * reference_frequency, high * reference_frequency
+
+    def is_free(self, name: str) -> bool:
+        """Whether the parameter may vary."""
+        low, high = self.bounds(name, 1.0)
+        return bool(high > low)
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Names of the parameters that may vary, in the order of the table."""
+        return tuple(name for name in STROKE_PARAMETERS if self.is_free(name))
+
+
+def _interval(field: str, value: Any) -> Interval:
+    """A checked (lower, upper) from a pair or a single number."""
+    name = "frequency" if field == "frequency_ratio" else field
+    ends = tuple(value) if isinstance(value, list | tuple | np.ndarray) else (value, value)
+    if len(ends) != 2:
+        raise TypeError(f"bounds of {field} = {value!r} are not allowed; allowed: (lower, upper) or one number")
+    low, high = (
+        float(np.asarray(STROKE_PARAMETERS[name].check(end, field=f"{which} bound of {field}")))
+        for which, end in zip(("lower", "upper"), ends, strict=True)
+    )
+    if low > high:
+        raise ValueError(f"bounds of {field}: lower = {low:.6g} > upper = {high:.6g}; allowed: lower <= upper")
+    return low, high
+
+
+@record
+class HoverProblem:
+    """Hovering with the least power: minimise P* over the box subject to Λ >= 1.
+
+    With no argument, problem A of the documentation: the frequency is free and the smallest angle of attack is
+    bounded, so that the optimum is known with a proof.
+
+    Attributes:
+        name: what tables and files call it.
+        box: the search box; a dict overrides single bounds of the default.
+        model: the aerodynamic options; a dict overrides single ones.
+        lift_penalty: λ of the reward, in units of the reference power per unit of missing weight support, > 0;
+            "auto" is max(3, twice the multiplier of the constrained optimum), which makes the penalty exact.
+        reward_floor: the reward is clipped below at this, < 0.
+
+    Raises:
+        TypeError: for an unknown field, bound or option.
+        ValueError: for a value outside its range.
+    """
+
+    name: str = "free-frequency"
+    box: StrokeBox = StrokeBox()
+    model: HoverModel = HoverModel()
+    lift_penalty: float | Literal["auto"] = "auto"
+    reward_floor: float = -20.0
+
+    def __post_init__(self) -> None:
+        """Check every field; box and model may be dicts."""
+        if not isinstance(self.name, str) or not self.name:
+            raise TypeError(f"name = {self.name!r} is not allowed; allowed: a non-empty string")
+        for field, kind in (("box", StrokeBox), ("model", HoverModel)):
+            value = getattr(self, field)
+            if isinstance(value, Mapping):
+                object.__setattr__(self, field, kind(**value))
+            elif not isinstance(value, kind):
+                raise TypeError(f"{field} = {value!r} is not allowed; allowed: a {kind.__name__} or a dict")
+        if isinstance(self.lift_penalty, str):
+            require_name("lift_penalty", self.lift_penalty, ("auto",))
+        else:
+            require_real("lift_penalty", self.lift_penalty, 0.0, open_low=True)
+        require_real("reward_floor", self.reward_floor, high=0.0, open_high=True)
+        if self.model.induced and self.box.flap_amplitude[1] > math.pi / 2:
+            raise ValueError(
+                f"upper bound of flap_amplitude = {self.box.flap_amplitude[1]:.6g} is not allowed; allowed: up to "
+                "1.5708 rad where k_flap is used, more only with model={'induced': False}"
+            )
+
+    @property
+    def min_angle_of_attack(self) -> float:
+        """α_min, the smallest angle of attack that a stroke of the box can reach [rad]."""
+        return math.pi / 2 - self.box.pitch_amplitude[1]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The problem as JSON keeps it; `HoverProblem(**d)` gives it back."""
+        return asdict(self)
+
+
+PROBLEMS: dict[str, HoverProblem] = {"free-frequency": HoverProblem()}
+"""The named problems."""
+
+
+def as_problem(value: Any) -> HoverProblem:
+    """A `HoverProblem` from a name of `PROBLEMS`, a `HoverProblem`, the dict of its fields, or None for the default.
+
+    Raises:
+        TypeError: for anything else.
+        ValueError: for an unknown name.
+    """
+    if value is None:
+        return HoverProblem()
+    if isinstance(value, str):
+        return PROBLEMS[require_name("problem", value, PROBLEMS)]
+    if isinstance(value, Mapping):
+        return HoverProblem(**value)
+    if isinstance(value, HoverProblem):
+        return value
+    raise TypeError(f"problem = {value!r} is not allowed; allowed: a HoverProblem, a dict of its fields or a name")
