@@ -1,0 +1,57 @@
+"""A Gaussian policy whose mean stays near the box and whose noise is its own for every wing."""
+
+from typing import Any
+
+import torch
+from gymnasium import spaces
+from stable_baselines3.common.distributions import DiagGaussianDistribution, Distribution
+from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.type_aliases import Schedule
+from torch import nn
+
+MEAN_REACH = 1.1
+"""The mean runs over ±1.1, a little past the box, so that its faces are reached at a finite weight."""
+LEAST_FLOOR = -20.0
+"""A floor of the log standard deviation that binds nothing."""
+
+
+class _Reach(nn.Module):
+    """x -> 1.1 tanh x."""
+
+    def forward(self, latent: torch.Tensor) -> torch.Tensor:
+        return MEAN_REACH * torch.tanh(latent)
+
+
+class HoverPolicy(ActorCriticPolicy):
+    """An MLP actor-critic for the exact-penalty objective, where a plain Gaussian gets stuck in two ways.
+
+    A mean that wanders out of the box sees no gradient and never returns: here it is bounded. One noise for all wings
+    dies with the first wing that is hovering, while another is still under weight: here the noise depends on the
+    observation, and `noise_floor` (log standard deviation, lowered by the trainer) keeps it from dying too early.
+    """
+
+    def __init__(
+        self,
+        observation_space: spaces.Space,
+        action_space: spaces.Box,
+        lr_schedule: Schedule,
+        **arguments: Any,
+    ) -> None:
+        """Build the networks; arguments as `ActorCriticPolicy`'s."""
+        self.noise_floor = LEAST_FLOOR
+        super().__init__(observation_space, action_space, lr_schedule, **arguments)
+
+    def _build(self, lr_schedule: Schedule) -> None:
+        super()._build(lr_schedule)
+        self.log_std.requires_grad_(False)
+        self.noise_net = nn.Linear(self.mlp_extractor.latent_dim_pi, self.log_std.shape[0])
+        nn.init.zeros_(self.noise_net.weight)
+        nn.init.constant_(self.noise_net.bias, self.log_std_init)
+        self.action_net = nn.Sequential(self.action_net, _Reach())
+        trained = [parameter for parameter in self.parameters() if parameter.requires_grad]
+        self.optimizer = self.optimizer_class(trained, lr=lr_schedule(1), **self.optimizer_kwargs)  # type: ignore[call-arg]
+
+    def _get_action_dist_from_latent(self, latent_pi: torch.Tensor) -> Distribution:
+        assert isinstance(self.action_dist, DiagGaussianDistribution)
+        noise = torch.clamp(self.noise_net(latent_pi), self.noise_floor, 0.0)
+        return self.action_dist.proba_distribution(self.action_net(latent_pi), noise)
