@@ -144,10 +144,10 @@ def comparison_table(results: Sequence[InsectResult]) -> str:
     gaps = [result.gap for result in results if result.gap is not None]
     if gaps:
         lines.append(f"gap to the optimum: mean {100 * np.mean(gaps):.3f} %, worst {100 * max(gaps):.3f} %")
-    for result in results:
-        if not result.best.feasible:
-            lines.append(
-                f"{result.insect.name} is INFEASIBLE: no stroke of the box supports more than "
-                f"{result.best.max_weight_support:.3f} of its weight; learned {result.weight_support:.3f}"
-            )
+    lines.extend(
+        f"{result.insect.name} is INFEASIBLE: no stroke of the box supports more than "
+        f"{result.best.max_weight_support:.3f} of its weight; learned {result.weight_support:.3f}"
+        for result in results
+        if not result.best.feasible
+    )
     return "\n".join(lines)

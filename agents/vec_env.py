@@ -69,7 +69,7 @@ class GymnasiumVecEnv(VecEnv):
     def get_images(self) -> Sequence[np.ndarray | None]:
         """One picture a row."""
         frames = self.venv.render()
-        return [None] * self.num_envs if frames is None else list(frames)
+        return [None] * self.num_envs if frames is None else [np.asarray(frame) for frame in frames]
 
     def get_attr(self, attr_name: str, indices: Rows = None) -> list[Any]:
         """The vector environment's attribute, once for each row asked for."""

@@ -12,7 +12,6 @@ from flapenv.optimum import Optimum, optimum
 from flapenv.performance import HoverModel, HoverPerformance, evaluate
 from flapenv.problem import PROBLEMS, HoverProblem, StrokeBox
 
-
 __all__ = [
     "INSECTS",
     "PROBLEMS",

@@ -106,7 +106,7 @@ def draw_wingbeat(insect: Insect, stroke: Stroke, model: HoverModel | None = Non
 
 
 def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Stroke) -> None:
-    """Wing sections at equal times along both half-strokes, to scale at the radius r̂₂ R, turning about the quarter chord."""
+    """Wing sections at equal times along both half-strokes, to scale at r̂₂ R, turned about the quarter chord."""
     radius = math.sqrt(insect.wing.moment(2)) * insect.wing.aspect_ratio  # in mean chords
     for start, level, colour, label in (
         (-math.pi / 2, 0.9, BLUE, "forward half-stroke →"),
@@ -122,7 +122,12 @@ def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Stroke) -> None:
         axes.axhline(level, color=GREY, lw=0.5, ls=":", zorder=0)
         axes.annotate(label, (0.01, 0.94 if level > 0 else 0.03), xycoords="axes fraction", color=colour, fontsize=9)
     reach = 1.08 * (float(stroke.flap_amplitude) * radius + 0.6)
-    axes.set(xlim=(-reach, reach), ylim=(-1.6, 1.6), yticks=[], xlabel="arc of the section at r̂₂ [mean chords]; • leading edge")
+    axes.set(
+        xlim=(-reach, reach),
+        ylim=(-1.6, 1.6),
+        yticks=[],
+        xlabel="arc of the section at r̂₂ [mean chords]; • leading edge",
+    )
     axes.set_aspect("equal")
 
 
@@ -145,7 +150,9 @@ def _draw_history(axes: "Axes", time: np.ndarray, value: np.ndarray, mean: float
     axes.axhline(mean, color=GREY, lw=1, ls="--", label=f"mean {mean:.3f}" if mean < 10 else f"mean {mean:.2f}")
     axes.axhline(0, color=GREY, lw=0.5)
     top, bottom = max(0.0, float(np.max(value))), min(0.0, float(np.min(value)))
-    axes.set(xlabel="t/T", ylabel=label, xlim=(0, 1), ylim=(bottom - 0.05 * (top - bottom), bottom + 1.25 * (top - bottom)))
+    axes.set(
+        xlabel="t/T", ylabel=label, xlim=(0, 1), ylim=(bottom - 0.05 * (top - bottom), bottom + 1.25 * (top - bottom))
+    )
     axes.legend(fontsize=8, loc="upper right", frameon=False)
 
 
@@ -153,10 +160,9 @@ def figure_image(figure: "Figure") -> np.ndarray:
     """A figure as an array (height, width, 3) of uint8."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     canvas.draw()
-    pixels: Any = np.asarray(canvas.buffer_rgba())
-    return pixels[..., :3].copy()
+    return np.asarray(canvas.buffer_rgba())[..., :3].copy()
 
 
 def wingbeat_image(insect: Insect, stroke: Stroke, model: HoverModel | None = None) -> np.ndarray:

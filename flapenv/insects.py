@@ -101,7 +101,7 @@ def _part(insect: Insect, field: str, kind: type, *, optional: bool = False) -> 
 
 def _table(name: str) -> dict[str, dict[str, str]]:
     """A packaged table by insect, in its own order."""
-    with resources.files("flapenv").joinpath("data", name).open(encoding="utf-8", newline="") as file:
+    with resources.files("flapenv").joinpath("data", name).open(encoding="utf-8") as file:
         return {row["insect"]: row for row in csv.DictReader(file)}
 
 

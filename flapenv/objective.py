@@ -145,8 +145,4 @@ class HoverObjective:
         if not best.feasible:
             return None
         charge = 2 * best.multiplier / best.specific_power if math.isfinite(best.multiplier) else 0.0
-        return (
-            specific_power / best.specific_power
-            - 1
-            + max(LEAST_GAP_WEIGHT, charge) * max(0.0, 1 - weight_support)
-        )
+        return specific_power / best.specific_power - 1 + max(LEAST_GAP_WEIGHT, charge) * max(0.0, 1 - weight_support)

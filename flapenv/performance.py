@@ -244,9 +244,7 @@ def evaluate_by_blade_element(
     insect = as_insect(insect)
     stroke = insect.stroke if stroke is None else stroke
     options = HoverModel(**model)
-    constant = lift_constant(
-        hover_case(insect, options), options, stroke.mean_flap_speed, stroke.flap_amplitude
-    )
+    constant = lift_constant(hover_case(insect, options), options, stroke.mean_flap_speed, stroke.flap_amplitude)
     history = blade_element(
         insect.wing,
         stroke,

@@ -30,7 +30,7 @@ def record(cls: type[T]) -> type[T]:
     ]
 
     @functools.wraps(generated)
-    def __init__(self: Any, **values: Any) -> None:
+    def checked_init(self: Any, **values: Any) -> None:
         for name, value in values.items():
             if name not in known:
                 raise TypeError(f"{made.__name__} has no field {name!r} (got {value!r}); {allowed(name, known)}")
@@ -39,7 +39,7 @@ def record(cls: type[T]) -> type[T]:
             raise TypeError(f"{made.__name__} needs {', '.join(missing)}; its fields are {', '.join(known)}")
         generated(self, **values)
 
-    made.__init__ = __init__  # type: ignore[method-assign,assignment]
+    made.__init__ = checked_init  # type: ignore[method-assign]
     return made
 
 

@@ -68,9 +68,7 @@ def k_tip(downwash: Real, tip_speed: Real) -> Real:
     return as_result(1 / (1 - TIP_LOSS_FACTOR / 2 * inflow / xp.sqrt(1 + inflow**2)))
 
 
-def k_ind(
-    wing: Wing, *, root_offset: float = 0.0, section_lift_slope: float = 2 * math.pi, terms: int = 64
-) -> Real:
+def k_ind(wing: Wing, *, root_offset: float = 0.0, section_lift_slope: float = 2 * math.pi, terms: int = 64) -> Real:
     """k_ind from the lifting line of one wing turning about its root [-].
 
     With r̂ = (1-cos ϑ)/2, Γ = 2 Σ Aₙ sin nϑ, zero at root and tip, and ĉ = c/c̄,

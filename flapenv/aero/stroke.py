@@ -81,11 +81,11 @@ class Motion(Protocol):
 
     @property
     def frequency(self) -> Any:
-        """f [Hz]."""
+        """The frequency f [Hz]."""
 
     @property
     def flap_amplitude(self) -> Any:
-        """φmax [rad]."""
+        """The flapping amplitude φmax [rad]."""
 
     def flap_angle(self, phase: np.ndarray) -> np.ndarray:
         """φ at the phases [rad]."""

@@ -36,9 +36,7 @@ class Wing:
         set_ = object.__setattr__
         set_(self, "length", require_real("length", self.length, 0.0, open_low=True, unit="m"))
         set_(self, "mean_chord", require_real("mean_chord", self.mean_chord, 0.0, open_low=True, unit="m"))
-        set_(
-            self, "r1_hat", require_real("r1_hat", self.r1_hat, 0.0, R1_HAT_LIMIT, open_low=True, open_high=True)
-        )
+        set_(self, "r1_hat", require_real("r1_hat", self.r1_hat, 0.0, R1_HAT_LIMIT, open_low=True, open_high=True))
 
     @property
     def area(self) -> Real:

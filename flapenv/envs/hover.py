@@ -47,6 +47,10 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
         insects = (as_insect(choice),)
     if not insects:
         raise ValueError("insect = [] is not allowed; allowed: at least one insect")
+    names = [one.name for one in insects]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"insect holds {names.count(name)} called {name!r}; allowed: each name once")
     infeasible = {insect.name: optimum(insect, problem) for insect in insects}
     infeasible = {name: best for name, best in infeasible.items() if not best.feasible}
     if infeasible:
@@ -264,9 +268,7 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
         for name in ("num_envs", "autoreset_mode"):
             if name in arguments:
                 raise TypeError(f"{name} = {arguments[name]!r} is not allowed here; it is HoverVectorEnv's")
-        self.batch = HoverVectorEnv(
-            1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **arguments
-        )
+        self.batch = HoverVectorEnv(1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **arguments)
         self.render_mode = self.batch.render_mode
         self.observation_space = self.batch.single_observation_space
         self.action_space = self.batch.single_action_space
@@ -295,7 +297,7 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
         observation, reward, terminated, truncated, info = self.batch.step(np.asarray(action)[None])
         return observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first_row(info)
 
-    def render(self) -> np.ndarray | None:  # type: ignore[override]
+    def render(self) -> np.ndarray | None:
         """The last wingbeat as a picture (height, width, 3) of uint8; None without a render mode."""
         frames = self.batch.render()
         return None if frames is None else frames[0]

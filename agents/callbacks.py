@@ -1,0 +1,134 @@
+"""What happens beside the updates: the noise floor, the learning curve, checkpoints and the progress bar."""
+
+import csv
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from stable_baselines3.common.callbacks import BaseCallback
+from tqdm import tqdm
+
+from agents.comparison import Comparison
+from agents.policy import HoverPolicy
+from agents.presets import PPOPreset
+from agents.run_folder import CURVE, POLICY, write_atomically
+
+CURVE_COLUMNS = ("wingbeats", "seconds", "mean_reward", "mean_gap", "worst_gap")
+CURVE_POINTS, CHECKPOINTS = 200, 10
+"""Points of the learning curve and saved policies over a training budget."""
+
+
+class NoiseFloor(BaseCallback):
+    """Lowers the policy's noise floor with the budget that is left."""
+
+    def __init__(self, preset: PPOPreset) -> None:
+        """Follow the preset's schedule."""
+        super().__init__()
+        self.preset = preset
+
+    def _on_rollout_start(self) -> None:
+        policy = self.model.policy
+        assert isinstance(policy, HoverPolicy)
+        policy.noise_floor = self.preset.noise_floor_at(1 - self.num_timesteps / self.preset.wingbeats)
+
+    def _on_step(self) -> bool:
+        return True
+
+
+class LearningCurve(BaseCallback):
+    """Writes gaps of the noise-free policy against wingbeats and seconds, to a CSV file and to TensorBoard.
+
+    The gaps are watched only: nothing is chosen by them.
+    """
+
+    def __init__(self, out: Path, comparison: Comparison, budget: int) -> None:
+        """Write about `CURVE_POINTS` points over `budget` wingbeats to `out`."""
+        super().__init__()
+        self.path, self.comparison = out / CURVE, comparison
+        self.every, self.next = budget / CURVE_POINTS, 0.0
+        self.rows: list[tuple[float, ...]] = []
+        self._rewards: list[float] = []
+
+    def _on_training_start(self) -> None:
+        self.started = time.monotonic()
+        with self.path.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerow(CURVE_COLUMNS)
+
+    def _on_step(self) -> bool:
+        self._rewards.append(float(np.mean(self.locals["rewards"])))
+        return True
+
+    def _on_rollout_end(self) -> None:
+        if self.num_timesteps < self.next:
+            return
+        self.next += self.every
+        self.measure()
+
+    def measure(self) -> None:
+        """Add a point for the policy as it is now."""
+        gaps = self.comparison.gaps(self.model)
+        reward = float(np.mean(self._rewards)) if self._rewards else float("nan")
+        self._rewards.clear()
+        mean, worst = (float(np.mean(gaps)), float(np.max(gaps))) if len(gaps) else (float("nan"), float("nan"))
+        row = (self.num_timesteps, round(time.monotonic() - self.started, 3), reward, mean, worst)
+        self.rows.append(row)
+        with self.path.open("a", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerow(row)
+        for name, value in (("reward", reward), ("mean_gap", mean), ("worst_gap", worst)):
+            self.logger.record(f"hover/{name}", value)
+
+
+class Checkpoints(BaseCallback):
+    """Saves the policy ten times over the budget, each time in place of the last."""
+
+    def __init__(self, out: Path, budget: int) -> None:
+        """Save to `out`."""
+        super().__init__()
+        self.path, self.every = out / POLICY, budget / CHECKPOINTS
+        self.next = self.every
+
+    def _on_rollout_start(self) -> None:
+        if self.num_timesteps >= self.next:
+            self.next += self.every
+            self.save()
+
+    def _on_step(self) -> bool:
+        return True
+
+    def save(self) -> None:
+        """Save the policy as it is now."""
+        write_atomically(self.path, self.model.save)
+
+
+class ProgressBar(BaseCallback):
+    """A bar over the wingbeats with the latest gaps."""
+
+    def __init__(self, curve: LearningCurve, budget: int, *, shown: bool) -> None:
+        """Show the bar, or nothing."""
+        super().__init__()
+        self.curve, self.budget, self.shown = curve, budget, shown
+        self._bar: Any = None
+
+    def _on_training_start(self) -> None:
+        self._bar = tqdm(
+            total=self.budget,
+            unit=" wingbeats",
+            unit_scale=True,
+            disable=not self.shown,
+            dynamic_ncols=True,
+            mininterval=0.2 if sys.stderr.isatty() else 10,  # a log file wants few lines
+        )
+
+    def _on_step(self) -> bool:
+        self._bar.update(min(self.num_timesteps, self.budget) - self._bar.n)
+        if self.curve.rows:
+            _, _, _, mean, worst = self.curve.rows[-1]
+            self._bar.set_postfix_str(f"gap mean {100 * mean:.2f} %, worst {100 * worst:.2f} %", refresh=False)
+        return True
+
+    def close(self) -> None:
+        """Leave the bar as it stands."""
+        if self._bar is not None:
+            self._bar.close()
