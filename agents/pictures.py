@@ -39,7 +39,7 @@ def draw_learning_curve(out: Path, seed: int) -> "Figure":
     axes.set(
         yscale="log",
         xlabel="wingbeats [millions]",
-        ylabel="gap to the proven optimum of the box [%]",
+        ylabel="gap to the optimum of the box [%]",
         title=f"Learning to hover: one policy, all insects (seed {seed})",
     )
     axes.legend(frameon=False)

@@ -99,8 +99,8 @@ def _part(insect: Insect, field: str, kind: type, *, optional: bool = False) -> 
         raise TypeError(f"{field} = {value!r} is not allowed; allowed: a {kind.__name__} or a dict of its fields")
 
 
-def _table(name: str) -> dict[str, dict[str, str]]:
-    """A packaged table by insect, in its own order."""
+def read_table(name: str) -> dict[str, dict[str, str]]:
+    """A table of `flapenv/data` by insect, in its own order, its values as the strings of the file."""
     with resources.files("flapenv").joinpath("data", name).open(encoding="utf-8") as file:
         return {row["insect"]: row for row in csv.DictReader(file)}
 
@@ -108,9 +108,9 @@ def _table(name: str) -> dict[str, dict[str, str]]:
 @functools.cache
 def _load_all() -> dict[str, Insect]:
     """The eight insects of Tables 1-3 by name."""
-    factors, references = _table("induced_power_factors.csv"), _table("validation_table3.csv")
+    factors, references = read_table("induced_power_factors.csv"), read_table("validation_table3.csv")
     insects = {}
-    for name, row in _table("insects.csv").items():
+    for name, row in read_table("insects.csv").items():
         number = {key: float(value) for key, value in row.items() if key != "insect"}
         table3 = references[name]
         berman_wang = table3["berman_wang_weight_support"]
