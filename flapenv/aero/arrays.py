@@ -45,6 +45,14 @@ def as_arrays(*values: Real) -> tuple[Any, ...]:
     return (np, *(np.asarray(value, dtype=dtype) for value in values))
 
 
+def as_like(reference: Real, *values: np.ndarray) -> tuple[Real, ...]:
+    """NumPy arrays in the library and the floating type of `reference`, an array or a tensor."""
+    if is_tensor(reference):
+        torch: ModuleType = sys.modules["torch"]
+        return tuple(torch.as_tensor(v, dtype=reference.dtype, device=reference.device) for v in values)
+    return tuple(value.astype(reference.dtype, copy=False) for value in values)
+
+
 def as_numpy(value: Real) -> np.ndarray:
     """A detached float copy or view of `value`, for checks, tables and pictures."""
     if is_tensor(value):

@@ -8,7 +8,7 @@ from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result
 from flapenv.aero.checks import record, require_real
 
 R1_HAT_LIMIT = 0.929 ** (1 / 0.268)
-"""Largest r̂₁ for which Ellington's correlation leaves a spread of area, r̂₂ > r̂₁ (here 0.7598)."""
+"""Largest r̂₁ for which Ellington's correlation leaves a spread of area, r̂₂ > r̂₁ (here 0.7597)."""
 
 
 @record
@@ -20,7 +20,7 @@ class Wing:
     Attributes:
         length: R, from the root to the tip [m], > 0.
         mean_chord: c̄ [m], > 0.
-        r1_hat: r̂₁, radius of the centre of area over R, in (0, 0.7598), where the beta exponents are positive.
+        r1_hat: r̂₁, radius of the centre of area over R, in (0, 0.7597), where the beta exponents are positive.
 
     Raises:
         TypeError: for an unknown or missing field, or one that is not real.

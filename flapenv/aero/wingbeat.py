@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from flapenv.aero.arrays import Real, as_arrays, as_numpy
+from flapenv.aero.arrays import Real, as_arrays, as_like, as_numpy
 from flapenv.aero.checks import require_real
 from flapenv.aero.stroke import flap_speed, pitch_waveform
 
@@ -73,9 +73,7 @@ def speed_averages(
     flap_shape, pitch_amplitude, pitch_shape = (
         value[..., None] for value in (flap_shape, pitch_amplitude, pitch_shape)
     )
-    fractions, weights = _graded_rule(nodes)
-    if pitch_phase.dtype != fractions.dtype or xp is not np:
-        _, _, fractions, weights = as_arrays(pitch_phase, fractions, weights)
+    fractions, weights = as_like(pitch_phase, *_graded_rule(nodes))
     half_turns = xp.round(pitch_phase / math.pi)
     sense = (1 - 2 * (half_turns % 2))[..., None]  # sign of θ after its reversal
     before = (half_turns * math.pi - pitch_phase + math.pi / 2)[..., None]  # from stroke to pitch reversal
