@@ -132,12 +132,11 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         OSError: if it cannot be written.
     """
     preset = config.preset
+    torch.set_num_threads(preset.threads)
+    model, comparison = make_model(config), Comparison(config.insects, config.problem)
     out = open_run_folder(out, f"hover-ppo-seed{config.seed}")
     write_json(out / CONFIG, {**config.to_dict(), "versions": versions()})
-    torch.set_num_threads(preset.threads)
-    model = make_model(config)
     model.set_logger(configure(str(out / TENSORBOARD), ["tensorboard"]))
-    comparison = Comparison(config.insects, config.problem)
     curve = LearningCurve(out, comparison, preset.wingbeats)
     checkpoints = Checkpoints(out, preset.wingbeats)
     bar = ProgressBar(curve, preset.wingbeats, shown=progress)

@@ -68,7 +68,7 @@ class GymnasiumVecEnv(VecEnv):
 
     def get_images(self) -> Sequence[np.ndarray | None]:
         """One picture a row."""
-        frames = self.venv.render()
+        frames = None if self.render_mode is None else self.venv.render()
         return [None] * self.num_envs if frames is None else [np.asarray(frame) for frame in frames]
 
     def get_attr(self, attr_name: str, indices: Rows = None) -> list[Any]:

@@ -108,7 +108,7 @@ def specific_power_errors(rows: list[Table3Row]) -> np.ndarray:
 def validation_report() -> str:
     """Both tables and their errors as text."""
     second, third = table2(), table3()
-    factors = [("Table 2", "k_ind", "paper", "k_tip", "paper", "k_flap", "paper")]
+    factors: list[tuple[str, ...]] = [("Table 2", "k_ind", "paper", "k_tip", "paper", "k_flap", "paper")]
     factors += [
         (
             row.insect,
@@ -124,7 +124,7 @@ def validation_report() -> str:
         )
         for row in second
     ]
-    hover = [("Table 3", "Λ", "paper", "CFD", "P* [W/kg]", "paper", "CFD", "Λ at k = 1")]
+    hover: list[tuple[str, ...]] = [("Table 3", "Λ", "paper", "CFD", "P* [W/kg]", "paper", "CFD", "Λ at k = 1")]
     hover += [
         (
             row.insect,

@@ -66,7 +66,9 @@ def test_replace_validates_again() -> None:
 
 
 def test_an_unknown_insect_is_refused_with_all_names_and_the_nearest() -> None:
-    with pytest.raises(ValueError, match=r"insect = 'hawkmouth' is unknown; allowed: fruitfly, .*did you mean 'hawkmoth'"):
+    with pytest.raises(
+        ValueError, match=r"insect = 'hawkmouth' is unknown; allowed: fruitfly, .*did you mean 'hawkmoth'"
+    ):
         load_insect("hawkmouth")
     with pytest.raises(TypeError, match="insect = 7"):
         as_insect(7)

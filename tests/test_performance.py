@@ -100,7 +100,8 @@ def test_batches_of_strokes_and_insects_equal_single_evaluations() -> None:
         assert together.specific_power[i] == pytest.approx(alone.specific_power, rel=1e-8)
     herd = dataclasses.replace(HAWKMOTH, mass=np.array([1e-3, 2e-3]))
     np.testing.assert_allclose(
-        evaluate(herd).weight_support, [evaluate(dataclasses.replace(HAWKMOTH, mass=m)).weight_support for m in (1e-3, 2e-3)]
+        evaluate(herd).weight_support,
+        [evaluate(dataclasses.replace(HAWKMOTH, mass=m)).weight_support for m in (1e-3, 2e-3)],
     )
 
 
@@ -150,6 +151,6 @@ def test_bad_model_options_are_named(options: dict[str, object], kind: type[Exce
 
 def test_amplitudes_beyond_90_degrees_are_refused_only_where_k_flap_is_used() -> None:
     wide = dataclasses.replace(HAWKMOTH.stroke, flap_amplitude=2.0)
-    with pytest.raises(ValueError, match="flap_amplitude .*k_flap.* = 2 "):
+    with pytest.raises(ValueError, match=r"flap_amplitude .*k_flap.* = 2 "):
         evaluate(HAWKMOTH, wide)
     assert evaluate(HAWKMOTH, wide, induced=False).weight_support > 1

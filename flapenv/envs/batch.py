@@ -166,7 +166,8 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
                 "final_info": _masked(info, finished),
                 "_final_info": finished.copy(),
             }
-            info = _merged(_masked(info, ~finished), _masked(self._begin(finished, {}), finished)) | final
+            going_on = {} if finished.all() else _masked(info, ~finished)
+            info = _merged(going_on, _masked(self._begin(finished, {}), finished)) | final
             finished = np.zeros_like(finished)
         elif ended.any():
             info = _merged(info, _masked(self._begin(ended, {}), ended))
@@ -191,9 +192,10 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         """Actions as a float32 array of the right shape, finite."""
         try:
             array = np.asarray(actions)
-            array = array if array.dtype == np.float32 else array.astype(np.float64)
-        except (TypeError, ValueError):
-            raise TypeError(f"actions = {actions!r} are not real numbers; allowed: floats in [-1, 1]") from None
+        except ValueError:  # rows of different lengths
+            array = np.empty(0, dtype=object)
+        if array.dtype.kind not in "fiu":
+            raise TypeError(f"actions = {actions!r} are not real numbers; allowed: floats in [-1, 1]")
         if array.shape != self.action_space.shape:
             raise ValueError(f"actions of shape {array.shape} are not allowed; allowed: {self.action_space.shape}")
         if not np.isfinite(array).all():

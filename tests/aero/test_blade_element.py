@@ -34,9 +34,7 @@ def test_two_gauss_jacobi_strips_are_exact_in_the_span(hawkmoth: Insect) -> None
 
 def test_doubling_the_frequency_gives_four_times_the_lift_and_eight_times_the_power(hawkmoth: Insect) -> None:
     faster = dataclasses.replace(hawkmoth.stroke, frequency=2 * hawkmoth.stroke.frequency)
-    slow, fast = (
-        blade_element(hawkmoth.wing, stroke, 1.3, air_density=1.225) for stroke in (hawkmoth.stroke, faster)
-    )
+    slow, fast = (blade_element(hawkmoth.wing, stroke, 1.3, air_density=1.225) for stroke in (hawkmoth.stroke, faster))
     assert fast.mean_lift == pytest.approx(4 * slow.mean_lift, rel=1e-12)
     assert fast.mean_power == pytest.approx(8 * slow.mean_power, rel=1e-12)
 

@@ -46,7 +46,9 @@ def test_angles_stay_within_their_amplitudes_and_reach_them(stroke: Stroke) -> N
 @given(strokes())
 def test_half_strokes_mirror_each_other_for_every_pitch_phase(stroke: Stroke) -> None:
     for motion in (stroke.flap_angle, stroke.flap_rate, stroke.pitch_angle, stroke.pitch_rate):
-        np.testing.assert_allclose(motion(PHASE + math.pi), -motion(PHASE), rtol=1e-9, atol=1e-9 * np.max(motion(PHASE)))
+        np.testing.assert_allclose(
+            motion(PHASE + math.pi), -motion(PHASE), rtol=1e-9, atol=1e-9 * np.max(motion(PHASE))
+        )
     np.testing.assert_allclose(stroke.angle_of_attack(PHASE + math.pi), stroke.angle_of_attack(PHASE), rtol=1e-9)
 
 

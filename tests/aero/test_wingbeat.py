@@ -18,7 +18,9 @@ AREA_SPEED = 1.225 * HAWKMOTH.wing.area * HAWKMOTH.wing.length**2
 
 def oracle_averages(stroke: Stroke, steps: int) -> tuple[float, float]:
     """Lift and power averages of the waveform from the converged blade-element oracle."""
-    history = blade_element(HAWKMOTH.wing, stroke, 1.0, air_density=1.225, strips=4, steps=steps, spacing="gauss-jacobi")
+    history = blade_element(
+        HAWKMOTH.wing, stroke, 1.0, air_density=1.225, strips=4, steps=steps, spacing="gauss-jacobi"
+    )
     speed = stroke.mean_flap_speed
     lift = history.mean_lift / (AREA_SPEED * HAWKMOTH.wing.moment(2) * speed**2)
     power = history.mean_power / (2 * AREA_SPEED * HAWKMOTH.wing.length * HAWKMOTH.wing.moment(3) * speed**3)
@@ -75,9 +77,7 @@ def test_the_fast_path_meets_the_oracle_where_both_waveforms_are_sharp(
 
 @given(strokes(sharpest_flap=1.0, sharpest_pitch=200))
 def test_the_default_tolerance_is_met_by_far_more_nodes(stroke: Stroke) -> None:
-    many = speed_averages(
-        stroke.flap_shape, stroke.pitch_amplitude, stroke.pitch_shape, stroke.pitch_phase, nodes=600
-    )
+    many = speed_averages(stroke.flap_shape, stroke.pitch_amplitude, stroke.pitch_shape, stroke.pitch_phase, nodes=600)
     # the layer of a waveform that is almost a triangle is cut off at the tolerance of the environments
     np.testing.assert_allclose(fast_averages(stroke), many, rtol=1e-8 if stroke.flap_shape < 0.99999 else 1e-6)
 

@@ -1,0 +1,36 @@
+"""Settings of the learners."""
+
+import pytest
+
+from agents.presets import PPOPreset
+
+
+def test_the_learning_rate_falls_from_its_start_to_zero() -> None:
+    preset = PPOPreset()
+    rates = [preset.learning_rate_at(left) for left in (1.0, 0.7, 0.3, 0.0)]
+    assert rates[0] == preset.learning_rate
+    assert rates == sorted(rates, reverse=True)
+    assert rates[-1] == 0
+    assert preset.learning_rate_at(-0.01) == 0  # the last rollout may pass the budget
+
+
+def test_the_noise_floor_falls_until_its_fraction_of_the_budget_and_stays() -> None:
+    preset = PPOPreset(noise_floor=-4.0, last_noise_floor=-6.0, floor_until=0.5)
+    assert [preset.noise_floor_at(left) for left in (1.0, 0.75, 0.5, 0.0)] == [-4, -5, -6, -6]
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "kind"),
+    [
+        ("wingbeats", 0, ValueError),
+        ("rows", 1.5, TypeError),
+        ("learning_rate", 0.0, ValueError),
+        ("target_kl", float("nan"), ValueError),
+        ("noise_floor", 1.0, ValueError),
+        ("floor_until", 0.0, ValueError),
+        ("clip", 0.2, TypeError),
+    ],
+)
+def test_bad_settings_are_named(field: str, value: object, kind: type[Exception]) -> None:
+    with pytest.raises(kind, match=field):
+        PPOPreset(**{field: value})

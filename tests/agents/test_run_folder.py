@@ -1,0 +1,48 @@
+"""Run folders lose nothing."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from agents.run_folder import CONFIG, open_run_folder, versions, write_atomically, write_json
+
+
+def test_an_unnamed_run_gets_the_next_free_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert [str(open_run_folder(None, "hover")) for _ in range(3)] == ["runs/hover", "runs/hover-2", "runs/hover-3"]
+
+
+def test_a_folder_that_holds_a_run_is_refused_and_any_other_taken(tmp_path: Path) -> None:
+    assert open_run_folder(tmp_path / "a" / "b", "hover").is_dir()
+    (tmp_path / "a" / "b" / "notes.txt").touch()
+    assert open_run_folder(tmp_path / "a" / "b", "hover").is_dir()
+    (tmp_path / "a" / "b" / CONFIG).touch()
+    with pytest.raises(FileExistsError, match="holds a run already; allowed: a new or empty folder"):
+        open_run_folder(tmp_path / "a" / "b", "hover")
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
+    path = tmp_path / "policy.zip"
+    path.write_text("old")
+
+    def fail(part: Path) -> None:
+        part.write_text("half")
+        raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        write_atomically(path, fail)
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_json_is_readable_and_refuses_nan(tmp_path: Path) -> None:
+    write_json(tmp_path / "a.json", {"Λ": 1.0, "gap": None})
+    assert json.loads((tmp_path / "a.json").read_text(encoding="utf-8")) == {"Λ": 1.0, "gap": None}
+    with pytest.raises(ValueError, match="JSON"):
+        write_json(tmp_path / "a.json", {"gap": float("nan")})
+    assert json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["gap"] is None
+
+
+def test_versions_name_all_a_result_depends_on() -> None:
+    assert set(versions()) == {"python", "flapenv", "gymnasium", "numpy", "scipy", "stable-baselines3", "torch"}

@@ -1,0 +1,142 @@
+"""Training end to end, from the command line too."""
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from stable_baselines3 import PPO
+
+from agents.presets import PPOPreset
+from agents.training import TrainingConfig, summary, train
+from flapenv import INSECTS, Stroke, evaluate
+
+ROOT = Path(__file__).parents[2]
+TINY = PPOPreset(wingbeats=4096, rows=512, minibatch=128, epochs=1)
+
+
+def command(*arguments: str, cwd: Path = ROOT) -> subprocess.Popen[str]:
+    return subprocess.Popen(
+        [sys.executable, str(ROOT / "train.py"), *arguments],
+        cwd=cwd,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )
+
+
+def test_a_run_writes_everything_needed_to_repeat_and_judge_it(tmp_path: Path) -> None:
+    result = train(TrainingConfig(preset=TINY, seed=3), tmp_path, progress=False)
+    names = {path.name for path in tmp_path.iterdir()}
+    pictures = {"learning_curve.png", "strokes.png"}
+    assert names == {"config.json", "results.json", "policy.zip", "curve.csv", "tensorboard"} | pictures
+    assert any((tmp_path / "tensorboard").glob("events.out.tfevents.*"))
+
+    config = json.loads((tmp_path / "config.json").read_text(encoding="utf-8"))
+    assert config["seed"] == 3
+    assert PPOPreset(**config["preset"]) == TINY
+    assert {"torch", "gymnasium", "flapenv"} <= set(config["versions"])
+    again = TrainingConfig(insects=config["insects"], problem=config["problem"], preset=TINY, seed=3)
+    assert again == TrainingConfig(preset=TINY, seed=3)
+
+    results = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    assert tuple(results["insects"]) == INSECTS
+    assert results["wingbeats"] == 4096
+    assert results["interrupted"] is False
+    for name, entry in results["insects"].items():
+        ours = evaluate(name, Stroke(**entry["stroke"]))
+        assert entry["weight_support"] == pytest.approx(ours.weight_support, rel=1e-12)
+        assert entry["specific_power"] == pytest.approx(ours.specific_power, rel=1e-12)
+    assert results["mean_gap_percent"] == pytest.approx(
+        sum(entry["gap_percent"] for entry in results["insects"].values()) / 8
+    )
+    with (tmp_path / "curve.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert int(rows[-1]["wingbeats"]) == 4096
+    assert float(rows[-1]["mean_gap"]) * 100 == pytest.approx(results["mean_gap_percent"], rel=1e-4)
+    assert "4,096 wingbeats" in summary(result)
+
+
+def test_the_same_seed_learns_the_same_and_the_saved_policy_is_the_last(tmp_path: Path) -> None:
+    config = TrainingConfig(preset=TINY, seed=1)
+    one, two = (train(config, tmp_path / name, progress=False) for name in "ab")
+    other = train(TrainingConfig(preset=TINY, seed=2), tmp_path / "c", progress=False)
+    assert [a.stroke for a in one.insects] == [b.stroke for b in two.insects]
+    assert [a.stroke for a in one.insects] != [b.stroke for b in other.insects]
+
+    from agents.comparison import Comparison
+
+    loaded = PPO.load(tmp_path / "a" / "policy.zip", device="cpu")
+    strokes = [result.stroke for result in Comparison(config.insects, config.problem).results(loaded)]
+    assert strokes == [result.stroke for result in one.insects]
+
+
+@pytest.mark.filterwarnings("ignore:.*no stroke of the box:UserWarning")
+def test_an_infeasible_insect_is_trained_and_reported(tmp_path: Path) -> None:
+    problem = {"box": {"frequency_ratio": (0.3, 0.45)}}
+    config = TrainingConfig(insects=["ladybird", "hoverfly"], problem=problem, preset=TINY)
+    text = summary(train(config, tmp_path, progress=False))
+    assert "ladybird is INFEASIBLE" in text
+    results = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
+    assert results["infeasible"] == ["ladybird"]
+    assert results["insects"]["ladybird"]["feasible"] is False
+    assert results["insects"]["ladybird"]["gap_percent"] is None
+
+
+def test_ctrl_c_saves_what_was_learned_and_prints_the_comparison(tmp_path: Path) -> None:
+    process = command("--out", str(tmp_path / "run"), "--quiet")
+    curve = tmp_path / "run" / "curve.csv"
+    for _ in range(600):
+        if curve.exists() and len(curve.read_text(encoding="utf-8").splitlines()) > 3:
+            break
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "keeping what was learned" in err
+    assert "hawkmoth" in out
+    results = json.loads((tmp_path / "run" / "results.json").read_text(encoding="utf-8"))
+    assert results["interrupted"] is True
+    assert 0 < results["wingbeats"] < PPOPreset().wingbeats
+    assert (tmp_path / "run" / "policy.zip").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("--insects", "moth"), "insect = 'moth' is unknown; allowed: fruitfly"),
+        (("--problem", "free"), "problem = 'free' is unknown"),
+        (("--wingbeats", "0"), "wingbeats = 0"),
+        (("--seed", "-1"), "seed = -1"),
+        (("--insects", "hawkmoth", "hawkmoth"), "2 called 'hawkmoth'"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_code_2(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:
+    process = command(*arguments, "--out", str(tmp_path / "run"))
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert said in err
+    assert len(err.strip().splitlines()) == 1
+    assert not (tmp_path / "run").exists()
+
+
+def test_help_teaches() -> None:
+    out, _ = command("--help").communicate(timeout=60)
+    for word in ("examples:", "--seed", "--out", "results.json", "Ctrl-C", "hawkmoth"):
+        assert word in out
+
+
+@pytest.mark.slow
+def test_a_quarter_of_the_budget_learns_to_hover_within_2_percent(tmp_path: Path) -> None:
+    """The default recipe at a quarter of its wingbeats; the full budget is measured in the README."""
+    process = command("--wingbeats", "1000000", "--out", str(tmp_path / "run"), "--quiet")
+    process.communicate(timeout=600)
+    results = json.loads((tmp_path / "run" / "results.json").read_text(encoding="utf-8"))
+    assert results["mean_gap_percent"] <= 2
+    assert min(entry["weight_support"] for entry in results["insects"].values()) >= 0.98

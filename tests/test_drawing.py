@@ -1,0 +1,42 @@
+"""Pictures of wingbeats."""
+
+import numpy as np
+import pytest
+
+from flapenv import Insect, evaluate, optimum
+from flapenv.drawing import draw_wingbeat, stroke_text, wingbeat_history, wingbeat_image
+from flapenv.performance import HoverModel
+
+pytest.importorskip("matplotlib")
+
+
+def test_the_sheet_shows_sections_angles_lift_and_power_with_their_means(insect: Insect) -> None:
+    figure = draw_wingbeat(insect, insect.stroke)
+    assert [axes.get_ylabel() for axes in figure.axes] == ["", "angle [°]", "lift / weight", "power / mass [W/kg]"]
+    assert insect.name in figure.get_suptitle()
+    means = [axes.get_legend().get_texts()[0].get_text() for axes in figure.axes[2:]]
+    own = evaluate(insect)
+    assert means == [
+        f"mean {own.weight_support:.3f}",
+        f"mean {own.specific_power:.2f}",
+    ]
+
+
+def test_the_history_behind_the_picture_has_the_means_of_the_fast_path(hawkmoth: Insect) -> None:
+    best = optimum(hawkmoth).stroke
+    history = wingbeat_history(hawkmoth, best, HoverModel())
+    ours = evaluate(hawkmoth, best)
+    assert history.mean_lift == pytest.approx(ours.lift, rel=1e-3)
+    assert history.mean_power == pytest.approx(ours.power, rel=1e-3)
+
+
+def test_the_image_is_an_array_of_colours_and_differs_between_strokes(hawkmoth: Insect) -> None:
+    own, best = wingbeat_image(hawkmoth, hawkmoth.stroke), wingbeat_image(hawkmoth, optimum(hawkmoth).stroke)
+    assert own.dtype == np.uint8
+    assert own.shape == best.shape == (640, 960, 3)
+    assert np.any(own != best)
+
+
+def test_strokes_are_written_in_degrees(hawkmoth: Insect) -> None:
+    text = stroke_text(hawkmoth.stroke)
+    assert text == "f = 26.3 Hz   φmax = 60.5°   Cφ = 0   Cθ = 5   θmax = 58.0°   δ = 90.0°"

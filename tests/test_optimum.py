@@ -1,0 +1,211 @@
+"""The proven bound and the best stroke of the box."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from conftest import strokes
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flapenv import HoverModel, HoverProblem, Insect, Stroke, evaluate, load_insect, optimum
+from flapenv.aero.blade_element import blade_element
+from flapenv.optimum import lower_bound
+from flapenv.performance import hover_case, lift_constant
+
+HAWKMOTH = load_insect("hawkmoth")
+OPEN_BOX = {"flap_shape": (0.01, 0.9999), "pitch_shape": (0.1, 100.0)}
+IN_BOX_OPTIMA = {  # W/kg, physics of the default box: an independent solution of the same problem
+    "fruitfly": 11.63,
+    "bumblebee": 29.57,
+    "hawkmoth": 22.85,
+    "honeybee": 29.92,
+    "cranefly": 8.56,
+    "hoverfly": 17.39,
+    "dronefly": 21.89,
+    "ladybird": 15.98,
+}
+
+
+def bound_of(problem: HoverProblem) -> float:
+    return float(lower_bound(hover_case(HAWKMOTH, problem.model), problem))
+
+
+def test_the_default_optimum_is_the_known_one_and_lies_4_to_5_percent_above_the_bound(insect: Insect) -> None:
+    best = optimum(insect)
+    assert best.specific_power == pytest.approx(IN_BOX_OPTIMA[insect.name], abs=0.006)
+    assert 0.04 < best.gap_to_bound < 0.05
+    assert best.feasible
+    assert best.weight_support == pytest.approx(1, abs=1e-7)
+
+
+def test_the_default_optimum_is_at_the_corner_the_proof_names_with_symmetric_rotation(insect: Insect) -> None:
+    best = optimum(insect)
+    corner = dict.fromkeys(("flap_amplitude", "flap_shape", "pitch_shape", "pitch_amplitude"), "upper")
+    assert best.active_bounds == corner
+    assert best.stroke.pitch_phase == pytest.approx(math.pi / 2, abs=1e-4)
+    assert 0.53 < best.stroke.frequency / insect.stroke.frequency < 1.26
+
+
+def test_opening_the_box_closes_the_gap_to_the_bound() -> None:
+    gaps = [
+        optimum(HAWKMOTH, HoverProblem(box={"flap_shape": (0.01, flap), "pitch_shape": (0.1, pitch)})).gap_to_bound
+        for flap, pitch in ((0.99, 10), (0.99, 20), (0.999, 50), (0.9999, 100))
+    ]
+    assert gaps == sorted(gaps, reverse=True)
+    np.testing.assert_allclose(gaps, (0.0453, 0.032, 0.011, 0.004), atol=6e-4)
+    assert gaps[-1] < 0.005
+
+
+def test_the_optimum_is_confirmed_by_the_refined_oracle(insect: Insect) -> None:
+    for problem in (HoverProblem(), HoverProblem(box=OPEN_BOX)):
+        best = optimum(insect, problem)
+        assert best.oracle_specific_power == pytest.approx(best.specific_power, rel=1e-8)
+        assert best.oracle_weight_support == pytest.approx(best.weight_support, rel=1e-8)
+
+
+def test_the_multiplier_is_what_the_scaling_of_problem_a_says(insect: Insect) -> None:
+    best = optimum(insect)  # P* ∝ Λ^1.5 along the frequency
+    assert best.multiplier == pytest.approx(1.5 * best.specific_power, rel=1e-4)
+
+
+@given(strokes(sharpest_flap=1.0, sharpest_pitch=1000))
+def test_no_stroke_of_the_family_beats_the_bound(stroke: Stroke) -> None:
+    # scaled by its frequency to just carry the weight
+    lift = evaluate(HAWKMOTH, stroke).weight_support
+    hovering = dataclasses.replace(stroke, frequency=stroke.frequency / math.sqrt(lift))
+    result = evaluate(HAWKMOTH, hovering)
+    assert result.weight_support == pytest.approx(1, rel=1e-9)
+    assert result.specific_power >= bound_of(HoverProblem()) * (1 - 1e-9)
+
+
+@dataclasses.dataclass(frozen=True)
+class FreeMotion:
+    """Any periodic motion, flapping speed and pitch by their values at equal times: no family, no symmetry."""
+
+    frequency: float
+    flap_amplitude: float
+    speed: np.ndarray
+    pitch: np.ndarray
+
+    def _at(self, values: np.ndarray, phase: np.ndarray) -> np.ndarray:
+        return values[np.floor(phase / (2 * math.pi) * len(values)).astype(int) % len(values)]
+
+    def flap_angle(self, phase: np.ndarray) -> np.ndarray:
+        return np.zeros_like(phase)  # enters no force
+
+    def flap_rate(self, phase: np.ndarray) -> np.ndarray:
+        return self._at(self.speed, phase)
+
+    def pitch_angle(self, phase: np.ndarray) -> np.ndarray:
+        return self._at(self.pitch, phase)
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    pieces=st.integers(2, 64),
+    order=st.floats(0.0, 1.0),
+    amplitude=st.floats(math.radians(40), math.radians(90)),
+)
+def test_no_free_waveform_within_the_pitch_limit_beats_the_bound(
+    seed: int, pieces: int, order: float, amplitude: float
+) -> None:
+    """Piecewise constant speed and pitch, from random to nearly optimal (order = 1)."""
+    rng = np.random.default_rng(seed)
+    limit = math.pi / 2 - HoverProblem().min_angle_of_attack
+    speed = rng.normal(size=2 * pieces)
+    speed[:pieces] = order * 1 + (1 - order) * speed[:pieces]
+    speed[pieces:] = -order * 1 + (1 - order) * speed[pieces:]
+    speed -= np.mean(speed)  # it comes back to where it began
+    pitch = np.clip(order * limit * np.sign(speed) + (1 - order) * rng.normal(size=2 * pieces), -limit, limit)
+    motion = FreeMotion(frequency=1.0, flap_amplitude=amplitude, speed=speed, pitch=pitch)
+    constant = lift_constant(hover_case(HAWKMOTH, HoverModel()), HoverModel(), 1.0, amplitude)
+    history = blade_element(
+        HAWKMOTH.wing, motion, constant, air_density=1.225, strips=4, steps=2 * pieces, spacing="gauss-jacobi"
+    )
+    support = history.mean_lift / (HAWKMOTH.mass * 9.81)
+    if support > 1e-12:
+        needed = history.mean_power / HAWKMOTH.mass / support**1.5  # sped up until it hovers
+        assert needed >= bound_of(HoverProblem()) * (1 - 1e-9)
+
+
+def test_the_bound_is_attained_by_the_triangle_and_the_square_wave() -> None:
+    stroke = Stroke(
+        frequency=20.0,
+        flap_amplitude=math.pi / 2,
+        pitch_amplitude=math.radians(65),
+        flap_shape=1.0,
+        pitch_shape=1e9,
+    )
+    result = evaluate(HAWKMOTH, stroke)
+    assert result.specific_power / result.weight_support**1.5 == pytest.approx(bound_of(HoverProblem()), rel=1e-5)
+
+
+@given(strokes(sharpest_flap=1.0, sharpest_pitch=1000))
+def test_the_bound_holds_too_where_tip_loss_follows_the_stroke(stroke: Stroke) -> None:
+    problem = HoverProblem(model={"tip_loss": "stroke"})
+    reference = HAWKMOTH.stroke.frequency
+    inside = dataclasses.replace(stroke, frequency=min(max(stroke.frequency, 0.5 * reference), 1.5 * reference))
+    result = evaluate(HAWKMOTH, inside, tip_loss="stroke")
+    if result.weight_support >= 1:
+        assert result.specific_power >= bound_of(problem) * (1 - 1e-9)
+    assert optimum(HAWKMOTH, problem).specific_power >= bound_of(problem)
+
+
+def test_a_fixed_frequency_has_the_bound_of_the_mean_speed() -> None:
+    pitch = (math.radians(30), math.radians(85))
+    problem = HoverProblem(box={"frequency_ratio": 1.0, "flap_amplitude": 1.0, "pitch_amplitude": pitch})
+    best = optimum("dronefly", problem)
+    assert best.feasible
+    assert 0.1 < best.gap_to_bound < 0.2  # loose: only impulsive strokes approach it
+
+
+def test_a_box_without_angle_limit_still_has_a_positive_bound() -> None:
+    problem = HoverProblem(box={"pitch_amplitude": (math.radians(30), math.radians(90))})
+    best = optimum("dronefly", problem)
+    assert 0 < best.lower_bound < best.specific_power < optimum("dronefly").specific_power
+
+
+def test_an_infeasible_box_is_reported_with_its_largest_lift() -> None:
+    problem = HoverProblem(box={"frequency_ratio": (0.1, 0.2)})
+    best = optimum("ladybird", problem)
+    assert not best.feasible
+    assert 0 < best.max_weight_support < 1
+    assert best.weight_support == pytest.approx(best.max_weight_support)
+    assert best.multiplier == math.inf
+    assert evaluate("ladybird", best.stroke).weight_support == pytest.approx(best.max_weight_support, rel=1e-8)
+
+
+def test_weight_that_does_not_bind_costs_nothing() -> None:
+    best = optimum("ladybird", HoverProblem(box={"frequency_ratio": (8.0, 9.0)}))
+    assert best.feasible
+    assert best.weight_support > 1
+    assert best.multiplier == 0
+
+
+def test_a_box_of_one_stroke_is_its_own_optimum() -> None:
+    one = {"flap_amplitude": 1.2, "flap_shape": 0.5, "pitch_shape": 5.0, "pitch_amplitude": 1.0, "pitch_phase": 1.5}
+    best = optimum("hawkmoth", HoverProblem(box={**one, "frequency": 40.0}))
+    assert vars(best.stroke) == {**one, "frequency": 40.0}
+    assert best.feasible
+
+
+def test_the_optimum_beats_every_random_stroke_that_hovers(rng: np.random.Generator) -> None:
+    best, box = optimum(HAWKMOTH), HoverProblem().box
+    values = {name: rng.uniform(*box.bounds(name, HAWKMOTH.stroke.frequency), size=20_000) for name in box.free}
+    result = evaluate(HAWKMOTH, Stroke(**values))
+    assert np.min(result.specific_power[result.weight_support >= 1]) > best.specific_power
+
+
+def test_each_pair_of_insect_and_problem_is_solved_once() -> None:
+    assert optimum("fruitfly") is optimum(load_insect("fruitfly"), HoverProblem())
+
+
+def test_what_is_not_one_insect_is_refused() -> None:
+    with pytest.raises(TypeError, match="insect has array fields"):
+        optimum(dataclasses.replace(HAWKMOTH, mass=np.array([1e-3, 2e-3])))
+    with pytest.raises(ValueError, match="insect = 'moth'"):
+        optimum("moth")
+    with pytest.raises(TypeError, match="problem = 3"):
+        optimum("hawkmoth", 3)
