@@ -11,7 +11,6 @@ help:  ## Show the targets
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt pip
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 
@@ -34,7 +33,7 @@ format: $(STAMP)  ## Let ruff mend what it can
 	$(BIN)/ruff format .
 
 bench: $(STAMP)  ## Wingbeats a second of the oracle, the fast path and the vector environment
-	$(BIN)/python -m benchmarks.speed
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 $(BIN)/python -m benchmarks.speed
 
 validate: $(STAMP)  ## Tables 2 and 3 of the paper beside ours
 	$(BIN)/python -m flapenv.validation

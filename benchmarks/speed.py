@@ -1,0 +1,93 @@
+"""Wingbeats a second of every way to evaluate one, in one run and as ratios: `make bench`.
+
+Each case runs for a fixed time after a warm-up, the best of three repetitions. The baseline
+is pasted in here so that no other code of the project can make it look better: the paper's 50 strips by 500 steps in
+vectorised NumPy, one wingbeat at a time. `make bench` sets one thread.
+"""
+
+import os
+
+import platform
+import time
+from collections.abc import Callable
+
+import gymnasium as gym
+import numpy as np
+
+from flapenv import HoverProblem, Stroke, evaluate, load_insect
+from flapenv.aero.wingbeat import speed_averages, time_nodes
+from flapenv.coordinates import StrokeCoordinates
+from flapenv.performance import evaluate_by_blade_element
+from flapenv.tables import text_table
+
+SECONDS, REPETITIONS = 0.7, 3
+ROWS = 4096
+
+
+def baseline() -> None:
+    """One wingbeat by strips and steps, written out."""
+    t = np.linspace(0, 1, 500, endpoint=False)[:, None]
+    r = ((np.arange(50) + 0.5) / 50)[None]
+    c = r**0.8 * (1 - r) ** 0.5
+    v = np.cos(2 * np.pi * t) * r
+    al = 0.5 + 0.1 * np.tanh(5 * np.cos(2 * np.pi * t))
+    cl = np.sin(2 * al)
+    cd = np.sin(al) ** 2
+    (v * v * cl * c).mean()
+    (np.abs(v) ** 3 * cd * c).mean()
+
+
+def rate(work: Callable[[], object], wingbeats: int) -> float:
+    """Wingbeats a second, the best repetition."""
+    work()
+    best = 0.0
+    for _ in range(REPETITIONS):
+        calls, start = 0, time.perf_counter()
+        while (elapsed := time.perf_counter() - start) < SECONDS:
+            work()
+            calls += 1
+        best = max(best, calls * wingbeats / elapsed)
+    return best
+
+
+def cases() -> list[tuple[str, Callable[[], object], int]]:
+    """What is measured: a name, the work and how many wingbeats it is."""
+    hawkmoth, problem = load_insect("hawkmoth"), HoverProblem()
+    points = np.random.default_rng(0).uniform(-1, 1, (ROWS, 6)).astype(np.float32)
+    values, _ = StrokeCoordinates(problem.box).decode(points, 26.3)
+    double = {name: value.astype(float) for name, value in values.items()}
+    waveform = [values[name] for name in ("flap_shape", "pitch_amplitude", "pitch_shape", "pitch_phase")]
+    nodes = time_nodes(0.99, 10.0, tolerance=1e-6)
+    strokes = Stroke(**double)
+
+    batch = gym.make_vec("flapenv/Hover-v0", num_envs=ROWS, autoreset_mode="SAME_STEP")
+    batch.reset(seed=0)
+    single = gym.make("flapenv/Hover-v0")
+    action = points[0]
+
+    def beat_single() -> None:
+        single.reset()
+        single.step(action)
+
+    return [
+        ("baseline: 50 x 500 in NumPy, pasted", baseline, 1),
+        ("oracle: blade_element, 50 x 500", lambda: evaluate_by_blade_element(hawkmoth), 1),
+        (f"evaluate, {ROWS} strokes, float64, 1e-9", lambda: evaluate(hawkmoth, strokes), ROWS),
+        (f"fast averages, {ROWS} rows, float32, 1e-6", lambda: speed_averages(*waveform, nodes=nodes), ROWS),
+        (f"vector env, {ROWS} rows, step with infos", lambda: batch.step(points), ROWS),
+        ("gym.make env, reset and step", beat_single, 1),
+    ]
+
+
+def main() -> None:
+    """Measure and print."""
+    rates = [(name, rate(work, wingbeats)) for name, work, wingbeats in cases()]
+    reference = rates[0][1]
+    rows = [("case", "wingbeats/s", "x baseline")]
+    rows += [(name, f"{value:,.0f}", f"{value / reference:,.1f}") for name, value in rates]
+    print(text_table(rows))
+    print(f"{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
+
+
+if __name__ == "__main__":
+    main()
