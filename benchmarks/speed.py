@@ -6,7 +6,6 @@ vectorised NumPy, one wingbeat at a time. `make bench` sets one thread.
 """
 
 import os
-
 import platform
 import time
 from collections.abc import Callable
