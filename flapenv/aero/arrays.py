@@ -5,6 +5,7 @@ with names that NumPy >= 2 and torch share (`xp.asin`, `xp.clip`, `xp.sum(..., a
 here: a tensor can only arrive where torch is loaded already.
 """
 
+import functools
 import sys
 from types import ModuleType
 from typing import Any
@@ -25,7 +26,7 @@ def as_arrays(*values: Real) -> tuple[Any, ...]:
     """Bring numbers of mixed kinds to one array library and one floating type.
 
     Python scalars adapt to the arrays beside them, as NumPy promotes them; one tensor makes the rest tensors
-    of its type on its device.
+    on its device, of the widest floating type among the tensors.
 
     Args:
         *values: scalars, arrays or tensors of any shapes (nothing is broadcast here).
@@ -36,8 +37,9 @@ def as_arrays(*values: Real) -> tuple[Any, ...]:
     tensors = [value for value in values if is_tensor(value)]
     if tensors:
         torch: ModuleType = sys.modules["torch"]
-        like = tensors[0]
-        return (torch, *(torch.as_tensor(v, dtype=like.dtype, device=like.device) for v in values))
+        floating = [tensor.dtype for tensor in tensors if tensor.is_floating_point()]
+        dtype = functools.reduce(torch.promote_types, floating) if floating else torch.get_default_dtype()
+        return (torch, *(torch.as_tensor(v, dtype=dtype, device=tensors[0].device) for v in values))
     kinds = [v if isinstance(v, int | float) else np.asarray(v).dtype for v in values]
     dtype = np.result_type(np.float16, *kinds) if kinds else np.dtype(float)
     if dtype == np.float16:  # Python scalars alone carry no type

@@ -3,7 +3,7 @@
 import difflib
 import functools
 from collections.abc import Iterable
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from typing import Any, TypeVar, dataclass_transform
 
 import numpy as np
@@ -95,22 +95,55 @@ def require_real(
         ValueError: if any element is NaN, infinite or outside.
     """
     where = interval_text(low, high, open_low=open_low, open_high=open_high, unit=unit)
-    if isinstance(value, str | bytes | bool | np.bool_) or value is None:
-        raise TypeError(f"{field} = {value!r} is not a real number; allowed: {where}")
     try:
-        numbers = as_numpy(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{field} = {value!r} is not a real number; allowed: {where}") from None
+        kind = np.asarray(value.detach().cpu() if is_tensor(value) else value).dtype.kind
+        numbers = np.array(as_numpy(value)) if kind in "fiu" else np.empty(0)
+    except (TypeError, ValueError, OverflowError):  # ragged, or too large for a float
+        numbers = np.empty(0)
+    if not numbers.size:
+        raise TypeError(f"{field} = {value!r} is not a real number or an array of them; allowed: {where}")
     bad = ~np.isfinite(numbers)
     bad |= (numbers <= low) if open_low else (numbers < low)
     bad |= (numbers >= high) if open_high else (numbers > high)
     if np.any(bad):
         index = tuple(int(i) for i in np.argwhere(bad)[0])
         place = f"{field}[{', '.join(map(str, index))}]" if index else field
-        raise ValueError(f"{place} = {numbers[index]:.6g} is not allowed; allowed: finite, in {where}")
+        raise ValueError(f"{place} = {numbers[index]:.12g} is not allowed; allowed: finite, in {where}")
     if is_tensor(value):
         return value
+    numbers.flags.writeable = False  # a copy that nobody can change behind the check
     return numbers if numbers.ndim else float(numbers)
+
+
+def require_scalar(field: str, value: object, low: float = -np.inf, high: float = np.inf, **ends: Any) -> float:
+    """One real number as a Python float; arguments as `require_real`.
+
+    Raises:
+        TypeError: if `value` is not one real number.
+        ValueError: if it is NaN, infinite or outside.
+    """
+    number = require_real(field, value, low, high, **ends)
+    if np.ndim(number):
+        raise TypeError(f"{field} = {value!r} is not allowed; allowed: one number")
+    return float(number)
+
+
+def require_flag(field: str, value: object) -> bool:
+    """`value` if it is True or False.
+
+    Raises:
+        TypeError: for anything else.
+    """
+    if not isinstance(value, bool):
+        raise TypeError(f"{field} = {value!r} is not allowed; allowed: True, False")
+    return value
+
+
+def is_single(value: object) -> bool:
+    """Whether a value, or every field of a record and of the records in it, is free of array axes."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return all(is_single(part) for part in vars(value).values())
+    return isinstance(value, str) or value is None or np.ndim(value) == 0
 
 
 def require_count(field: str, value: object, low: int = 1) -> int:

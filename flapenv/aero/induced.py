@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result, is_tensor
+from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result
 from flapenv.aero.checks import require_count, require_real
 from flapenv.aero.wing import Wing
 
@@ -28,10 +28,7 @@ def k_flap(flap_amplitude: Real) -> Real:
     Raises:
         ValueError: for φmax beyond 90°, where the swept sectors of the two wings would overlap.
     """
-    if not is_tensor(flap_amplitude):
-        require_real(
-            "flap_amplitude (where k_flap is used)", flap_amplitude, 0.0, math.pi / 2, open_low=True, unit="rad"
-        )
+    require_real("flap_amplitude (where k_flap is used)", flap_amplitude, 0.0, math.pi / 2, open_low=True, unit="rad")
     return k_flap_unchecked(flap_amplitude)
 
 
@@ -80,7 +77,8 @@ def k_ind(wing: Wing, *, root_offset: float = 0.0, section_lift_slope: float = 2
         wing: the wing; array fields give an array of factors.
         root_offset: J, distance from the axis to the root over R [-].
         section_lift_slope: a [1/rad].
-        terms: terms of the sine series; 64 are converged to 1e-4.
+        terms: terms of the sine series; 64 are converged to 1e-4 for r̂₁ of 0.42 to 0.57. Beyond it the chord rises
+            ever more steeply at an end and convergence slows (at r̂₁ = 0.35 or 0.65 they are 6 % short).
 
     Returns:
         The factor, of the wing's shape. The defaults hold no fitted constant.

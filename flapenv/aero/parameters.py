@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from flapenv.aero.checks import interval_text, require_real
+from flapenv.aero.checks import require_real
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,10 +19,11 @@ class StrokeParameter:
         low: lower end of what is physically meaningful [unit].
         high: upper end [unit].
         open_low: whether `low` itself is refused.
-        open_high: whether `high` itself is refused.
         box: the default search box [unit]; for the frequency in multiples of the reference frequency.
         scale: how an action in [-1, 1] runs over the box: "linear", "log" (of the value) or "log-complement"
             (of one minus the value).
+        log_floor: what a logarithmic scale is shifted by in a box that comes closer to its pole than this: nearer
+            than that the waveform hardly changes any more.
     """
 
     name: str
@@ -32,9 +33,9 @@ class StrokeParameter:
     low: float
     high: float
     open_low: bool = False
-    open_high: bool = False
     box: tuple[float, float]
     scale: Literal["linear", "log", "log-complement"]
+    log_floor: float = 0.0
 
     def check(self, value: object, *, field: str | None = None) -> object:
         """`value` if it lies in the valid range.
@@ -43,20 +44,7 @@ class StrokeParameter:
             TypeError: if it is not real.
             ValueError: if it is outside, NaN or infinite.
         """
-        return require_real(
-            field or self.name,
-            value,
-            self.low,
-            self.high,
-            open_low=self.open_low,
-            open_high=self.open_high,
-            unit=self.unit,
-        )
-
-    @property
-    def valid_range(self) -> str:
-        """The valid range as text."""
-        return interval_text(self.low, self.high, open_low=self.open_low, open_high=self.open_high, unit=self.unit)
+        return require_real(field or self.name, value, self.low, self.high, open_low=self.open_low, unit=self.unit)
 
 
 STROKE_PARAMETERS: dict[str, StrokeParameter] = {
@@ -93,6 +81,7 @@ STROKE_PARAMETERS: dict[str, StrokeParameter] = {
             high=1.0,
             box=(0.01, 0.99),
             scale="log-complement",
+            log_floor=5e-5,
         ),
         StrokeParameter(
             name="pitch_shape",
@@ -103,6 +92,7 @@ STROKE_PARAMETERS: dict[str, StrokeParameter] = {
             high=math.inf,
             box=(0.1, 10.0),
             scale="log",
+            log_floor=0.05,
         ),
         StrokeParameter(
             name="pitch_amplitude",

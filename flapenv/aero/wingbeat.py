@@ -12,18 +12,19 @@ import math
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_arrays, as_like, as_numpy
-from flapenv.aero.checks import require_real
+from flapenv.aero.checks import require_scalar
 from flapenv.aero.stroke import flap_speed, pitch_waveform
 
-SHARPEST_LAYER = 1e-5
-"""Layers thinner than this [rad] carry less than the tolerance and are not resolved further."""
+THINNEST_LAYER = 1e-7
+"""Layers thinner than this [rad] are not resolved, whatever the tolerance: they carry less than their width."""
 
 
 def time_nodes(flap_shape: Real, pitch_shape: Real, *, tolerance: float = 1e-9) -> int:
     """Nodes per piece of a half-stroke for a relative error of the averages below `tolerance`.
 
     Grows with the digits wanted and, slowly, with the sharpest layer w = min(√(1-Cφ²), 1/Cθ, 1): n ∝ w^(-0.21), fitted
-    to the measured convergence and held by a test.
+    to the measured convergence and held by a test. Layers thinner than the tolerance carry less than it and are not
+    resolved, nor are those thinner than `THINNEST_LAYER`; the triangle itself, Cφ = 1, has none.
 
     Args:
         flap_shape: Cφ, the largest of which counts [-].
@@ -33,11 +34,11 @@ def time_nodes(flap_shape: Real, pitch_shape: Real, *, tolerance: float = 1e-9) 
     Returns:
         The node count.
     """
-    require_real("tolerance", tolerance, 1e-12, 0.1)
-    sharpest_flap = float(np.max(as_numpy(flap_shape)))
-    sharpest_pitch = float(np.max(as_numpy(pitch_shape)))
-    flap_layer = math.sqrt((1 - sharpest_flap) * (1 + sharpest_flap)) or 1.0  # the triangle itself has no layer
-    layer = max(min(flap_layer, 1 / max(sharpest_pitch, 1.0)), SHARPEST_LAYER)
+    tolerance = require_scalar("tolerance", tolerance, 1e-12, 0.1)
+    flap_shape, sharpest_pitch = as_numpy(flap_shape), float(np.max(as_numpy(pitch_shape)))
+    sharpest_flap = float(np.max(flap_shape[flap_shape < 1], initial=0.0))
+    flap_layer = math.sqrt((1 - sharpest_flap) * (1 + sharpest_flap))
+    layer = max(min(flap_layer, 1 / max(sharpest_pitch, 1.0)), tolerance, THINNEST_LAYER)
     return math.ceil(21 * layer**-0.21 * -math.log10(tolerance) / 6)
 
 

@@ -19,6 +19,9 @@ def test_one_tensor_makes_the_rest_tensors_of_its_type() -> None:
     xp, a, b, c = as_arrays(np.ones(2), torch.zeros(2, dtype=torch.float32), 3)
     assert xp is torch
     assert {value.dtype for value in (a, b, c)} == {torch.float32}
+    assert as_arrays(torch.ones(2, dtype=torch.int64), 0.5)[2] == 0.5  # a whole-number tensor truncates nothing
+    widest = as_arrays(torch.zeros(1, dtype=torch.float32), torch.zeros(1, dtype=torch.float64))
+    assert {value.dtype for value in widest[1:]} == {torch.float64}
     assert as_like(a, np.ones(3))[0].dtype == torch.float32
     assert as_numpy(torch.ones(2, requires_grad=True)).tolist() == [1, 1]
 
