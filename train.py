@@ -51,10 +51,19 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Train as the command line says; 0 on success, 2 for bad input, 130 after Ctrl-C."""
+    try:
+        return run(arguments)
+    except KeyboardInterrupt:
+        print("train.py: stopped outside of training; files already written are kept", file=sys.stderr)
+        return 130
+
+
+def run(arguments: list[str] | None) -> int:
+    """`main` without the guard against Ctrl-C."""
     options = parser().parse_args(arguments)
     try:
         from agents.presets import PPOPreset
-        from agents.training import TrainingConfig, summary, train
+        from agents.training import TrainingConfig, draw_pictures, summary, train
     except ImportError as missing:
         print(f"train.py: {missing}; install the learners: pip install -e '.[train]'", file=sys.stderr)
         return 2
@@ -69,10 +78,8 @@ def main(arguments: list[str] | None = None) -> int:
     except (ValueError, TypeError, OSError) as mistake:
         print(f"train.py: {mistake}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        print("train.py: stopped outside of training; what the run folder holds is kept", file=sys.stderr)
-        return 130
-    print(summary(result))
+    print(summary(result), flush=True)
+    draw_pictures(config, result)
     return 130 if result.interrupted else 0
 
 

@@ -47,14 +47,15 @@ class LearningCurve(BaseCallback):
         """Write about `CURVE_POINTS` points over `budget` wingbeats to `out`."""
         super().__init__()
         self.path, self.comparison = out / CURVE, comparison
+        with self.path.open("w", encoding="utf-8", newline="") as file:
+            csv.writer(file).writerow(CURVE_COLUMNS)
+        self.started = time.monotonic()
         self.every, self.next = budget / CURVE_POINTS, 0.0
         self.rows: list[tuple[float, ...]] = []
         self._rewards: list[float] = []
 
     def _on_training_start(self) -> None:
         self.started = time.monotonic()
-        with self.path.open("w", encoding="utf-8", newline="") as file:
-            csv.writer(file).writerow(CURVE_COLUMNS)
 
     def _on_step(self) -> bool:
         self._rewards.append(float(np.mean(self.locals["rewards"])))
@@ -67,9 +68,11 @@ class LearningCurve(BaseCallback):
         self.measure()
 
     def measure(self) -> None:
-        """Add a point for the policy as it is now."""
+        """Add a point for the policy as it is now, unless nothing was flown since the last."""
+        if not self._rewards:
+            return
         gaps = self.comparison.gaps(self.model)
-        reward = float(np.mean(self._rewards)) if self._rewards else float("nan")
+        reward = float(np.mean(self._rewards))
         self._rewards.clear()
         mean, worst = (float(np.mean(gaps)), float(np.max(gaps))) if len(gaps) else (float("nan"), float("nan"))
         row = (self.num_timesteps, round(time.monotonic() - self.started, 3), reward, mean, worst)

@@ -1,6 +1,6 @@
 """Settings of the learners: one frozen record each, everything needed to repeat a run."""
 
-from flapenv.aero.checks import record, require_count, require_real
+from flapenv.aero.checks import record, require_count, require_scalar
 
 
 @record
@@ -12,7 +12,7 @@ class PPOPreset:
         rows: wingbeats between two updates.
         minibatch: rows of a gradient step.
         epochs: passes over the rows, cut short where the policy has moved by `target_kl`.
-        learning_rate: at the start; falls to zero with `learning_rate_power` of the budget that is left.
+        learning_rate: at the start; falls towards zero with `learning_rate_power` of the budget that is left.
         learning_rate_power: 1 is linear, more spends longer on small steps.
         clip_range: of the probability ratio.
         target_kl: the update stops at 1.5 times this divergence. It keeps early leaps from landing where the
@@ -45,14 +45,15 @@ class PPOPreset:
         for name in ("wingbeats", "rows", "minibatch", "epochs", "width", "threads"):
             require_count(name, getattr(self, name))
         for name in ("learning_rate", "learning_rate_power", "clip_range", "target_kl"):
-            require_real(name, getattr(self, name), 0.0, open_low=True)
+            require_scalar(name, getattr(self, name), 0.0, open_low=True)
         for name in ("log_std", "noise_floor", "last_noise_floor"):
-            require_real(name, getattr(self, name), -20.0, 0.0)
-        require_real("floor_until", self.floor_until, 0.0, 1.0, open_low=True)
+            require_scalar(name, getattr(self, name), -20.0, 0.0)
+        require_scalar("floor_until", self.floor_until, 0.0, 1.0, open_low=True)
 
     def learning_rate_at(self, left: float) -> float:
-        """Learning rate with the fraction `left` of the budget still to go."""
-        return float(self.learning_rate * max(left, 0.0) ** self.learning_rate_power)
+        """Learning rate of the update after which the fraction `left` of the budget is still to go."""
+        before = min(1.0, max(left, 0.0) + self.rows / self.wingbeats)  # even the last update learns a little
+        return float(self.learning_rate * before**self.learning_rate_power)
 
     def noise_floor_at(self, left: float) -> float:
         """Floor of the log standard deviation with the fraction `left` of the budget still to go."""

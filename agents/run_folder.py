@@ -10,6 +10,7 @@ from typing import Any
 
 CONFIG, RESULTS, POLICY, CURVE = "config.json", "results.json", "policy.zip", "curve.csv"
 CURVE_PICTURE, STROKES_PICTURE, TENSORBOARD = "learning_curve.png", "strokes.png", "tensorboard"
+FILES = (CONFIG, RESULTS, POLICY, CURVE, CURVE_PICTURE, STROKES_PICTURE, TENSORBOARD)
 RUNS = Path("runs")
 PACKAGES = ("flapenv", "gymnasium", "numpy", "scipy", "stable-baselines3", "torch")
 
@@ -22,15 +23,19 @@ def open_run_folder(out: Path | None, name: str) -> Path:
         name: of the run.
 
     Raises:
-        FileExistsError: if `out` holds a run already, which would be lost.
+        FileExistsError: if `out` holds a file that a run writes, which would be lost.
+        NotADirectoryError: if `out` is a file.
         OSError: if it cannot be made or written.
     """
     if out is None:
         out, number = RUNS / name, 2
         while out.exists():
             out, number = RUNS / f"{name}-{number}", number + 1
-    elif (out / CONFIG).exists():
-        raise FileExistsError(f"--out {out} holds a run already; allowed: a new or empty folder")
+    taken = [name for name in FILES if (out / name).exists()]
+    if taken:
+        raise FileExistsError(f"--out {out} holds {', '.join(taken)} already; allowed: a folder without a run in it")
+    if out.exists() and not out.is_dir():
+        raise NotADirectoryError(f"--out {out} is a file; allowed: a folder")
     out.mkdir(parents=True, exist_ok=True)
     if not os.access(out, os.W_OK):
         raise PermissionError(f"--out {out} cannot be written")

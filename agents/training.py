@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -33,6 +33,9 @@ from flapenv.envs import HoverVectorEnv
 from flapenv.insects import INSECTS, Insect, as_insect
 from flapenv.problem import HoverProblem, as_problem
 
+LAST_SEED = 2**32 - 1
+"""The largest seed that NumPy's and torch's global generators both take."""
+
 
 @record
 class TrainingConfig:
@@ -47,12 +50,19 @@ class TrainingConfig:
 
     insects: Sequence[Any] = INSECTS
     problem: Any = "free-frequency"
-    preset: PPOPreset = PPOPreset()
+    preset: Any = PPOPreset()
     seed: int = 0
 
     def __post_init__(self) -> None:
-        """Resolve insects and problem, check the seed."""
-        require_count("seed", self.seed, low=0)
+        """Resolve insects, problem and preset, which may be dicts as from config.json; check the seed."""
+        if require_count("seed", self.seed, low=0) > LAST_SEED:
+            raise ValueError(f"seed = {self.seed} is not allowed; allowed: whole numbers from 0 to {LAST_SEED}")
+        if isinstance(self.insects, str) or not isinstance(self.insects, Sequence):
+            raise TypeError(f"insects = {self.insects!r} are not allowed; allowed: a list of names or insects")
+        preset = PPOPreset(**self.preset) if isinstance(self.preset, Mapping) else self.preset
+        if not isinstance(preset, PPOPreset):
+            raise TypeError(f"preset = {preset!r} is not allowed; allowed: a PPOPreset or a dict of its fields")
+        object.__setattr__(self, "preset", preset)
         object.__setattr__(self, "insects", tuple(as_insect(insect) for insect in self.insects))
         object.__setattr__(self, "problem", as_problem(self.problem))
 
@@ -60,13 +70,14 @@ class TrainingConfig:
         """As config.json keeps it."""
         insects: tuple[Insect, ...] = tuple(self.insects)
         problem: HoverProblem = self.problem
+        preset: PPOPreset = self.preset
         return {
             "environment": "flapenv/Hover-v0",
             "algorithm": "PPO",
             "seed": self.seed,
             "insects": [asdict(insect) for insect in insects],
             "problem": problem.to_dict(),
-            "preset": asdict(self.preset),
+            "preset": asdict(preset),
         }
 
 
@@ -91,7 +102,7 @@ class TrainingResult:
 
 def make_model(config: TrainingConfig) -> PPO:
     """PPO on the native batched environment, with random weights."""
-    preset = config.preset
+    preset: PPOPreset = config.preset
     env = HoverVectorEnv(
         preset.rows,
         insect=list(config.insects),
@@ -118,9 +129,9 @@ def make_model(config: TrainingConfig) -> PPO:
 def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = True) -> TrainingResult:
     """Train from random weights; the last policy is the result, nothing is picked by its score.
 
-    Writes config.json at the start, the policy and the learning curve as it goes, and results.json and the pictures
-    at the end. Ctrl-C ends the training early and keeps what was learned: everything is written for the policy as it
-    is then.
+    Writes config.json at the start, the policy and the learning curve as it goes, and results.json at the end;
+    `draw_pictures` adds the pictures. Ctrl-C ends the training early and keeps what was learned: everything is
+    written for the policy as it is then.
 
     Args:
         config: what to train.
@@ -131,7 +142,7 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         FileExistsError: if the folder holds a run already.
         OSError: if it cannot be written.
     """
-    preset = config.preset
+    preset: PPOPreset = config.preset
     torch.set_num_threads(preset.threads)
     model, comparison = make_model(config), Comparison(config.insects, config.problem)
     out = open_run_folder(out, f"hover-ppo-seed{config.seed}")
@@ -153,8 +164,7 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         print(f"stopped after {model.num_timesteps:,} wingbeats; keeping what was learned", file=sys.stderr)
     checkpoints.init_callback(model)
     checkpoints.save()
-    if model.num_timesteps:
-        curve.measure()
+    curve.measure()
     result = TrainingResult(
         out=out,
         insects=comparison.results(model),
@@ -163,9 +173,13 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         interrupted=interrupted,
     )
     save_results(config, result)
-    draw_learning_curve(out, config.seed).savefig(out / CURVE_PICTURE)
-    draw_strokes(result.insects).savefig(out / STROKES_PICTURE)
     return result
+
+
+def draw_pictures(config: TrainingConfig, result: TrainingResult) -> None:
+    """Add the learning curve and the learned over the optimal strokes to the run's folder."""
+    draw_learning_curve(result.out, config.seed).savefig(result.out / CURVE_PICTURE)
+    draw_strokes(result.insects).savefig(result.out / STROKES_PICTURE)
 
 
 def save_results(config: TrainingConfig, result: TrainingResult) -> None:

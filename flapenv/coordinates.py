@@ -4,15 +4,13 @@ from typing import Literal
 
 import numpy as np
 
+from flapenv.aero.arrays import Real
 from flapenv.aero.checks import require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.problem import StrokeBox
 
 Scaling = Literal["tip-speed", "log", "plain"]
 SCALINGS: tuple[Scaling, ...] = ("tip-speed", "log", "plain")
-
-LOG_FLOOR = 1e-6
-"""Where a logarithmic scale would run into its pole (Cφ = 1, Cθ = 0), it is shifted by this."""
 
 
 class StrokeCoordinates:
@@ -64,10 +62,9 @@ class StrokeCoordinates:
         inside = np.clip(points, -1, 1)
         clipped = np.any(inside != points, axis=-1)
         shape, dtype = points.shape[:-1], points.dtype
-        reference = np.asarray(reference_frequency, dtype=dtype)
         values: dict[str, np.ndarray] = {}
         for name in STROKE_PARAMETERS:
-            low, high = (np.asarray(bound, dtype=dtype) for bound in self.box.bounds(name, reference))
+            low, high = _inside(*self.box.bounds(name, reference_frequency), dtype)
             if name not in self.names:
                 values[name] = np.broadcast_to(low, shape)
                 continue
@@ -75,12 +72,12 @@ class StrokeCoordinates:
             if name == "frequency" and self._uses_tip_speed:
                 values[name] = fraction  # awaits φmax
                 continue
-            values[name] = np.clip(_between(fraction, low, high, self._scale(name)), low, high)
+            values[name] = np.clip(_between(fraction, low, high, *self._scale(name)), low, high)
         if self._uses_tip_speed:
             amplitude = values["flap_amplitude"]
-            low, high = (np.asarray(bound, dtype=dtype) for bound in self.box.bounds("frequency", reference))
-            first, last = self.box.flap_amplitude
-            tip_speed = _between(values["frequency"], low * dtype.type(first), high * dtype.type(last), "log")
+            low, high = _inside(*self.box.bounds("frequency", reference_frequency), dtype)
+            first, last = (dtype.type(bound) for bound in self.box.flap_amplitude)
+            tip_speed = _between(values["frequency"], low * first, high * last, "log")
             frequency = tip_speed / amplitude
             values["frequency"] = np.clip(frequency, low, high)
             slack = 8 * np.finfo(dtype).eps
@@ -104,35 +101,45 @@ class StrokeCoordinates:
             if name == "frequency" and self._uses_tip_speed:
                 first, last = self.box.flap_amplitude
                 value, low, high = value * values["flap_amplitude"], low * first, high * last
-            axes.append(np.clip(2 * _fraction(value, low, high, self._scale(name)) - 1, -1, 1))
+            axes.append(np.clip(2 * _fraction(value, low, high, *self._scale(name)) - 1, -1, 1))
         return np.stack(np.broadcast_arrays(*axes), axis=-1) if axes else np.zeros((0,))
 
-    def _scale(self, name: str) -> str:
-        return "linear" if self.scaling == "plain" else STROKE_PARAMETERS[name].scale
+    def _scale(self, name: str) -> tuple[str, float]:
+        """The scale of an axis and the floor of its logarithm."""
+        row = STROKE_PARAMETERS[name]
+        return ("linear", 0.0) if self.scaling == "plain" else (row.scale, row.log_floor)
 
 
-def _between(fraction: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str) -> np.ndarray:
+def _inside(low: Real, high: Real, dtype: np.dtype) -> tuple[np.ndarray, np.ndarray]:
+    """Bounds in the type of the computation, rounded into the interval: a stroke at 90° must not be a little more."""
+    cast_low, cast_high = np.asarray(low, dtype=dtype), np.asarray(high, dtype=dtype)
+    cast_low = np.where(cast_low.astype(float) < low, np.nextafter(cast_low, dtype.type(np.inf)), cast_low)
+    cast_high = np.where(cast_high.astype(float) > high, np.nextafter(cast_high, dtype.type(-np.inf)), cast_high)
+    return np.minimum(cast_low, cast_high), cast_high
+
+
+def _between(fraction: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str, floor: float = 0.0) -> np.ndarray:
     """The value a fraction of the way from `low` to `high` along a scale."""
     if scale == "linear":
         return low + (high - low) * fraction
     if scale == "log-complement":
-        return 1 - _between(fraction, 1 - low, 1 - high, "log")
-    shift = _shift(low, high)
+        return 1 - _between(fraction, 1 - low, 1 - high, "log", floor)
+    shift = _shift(low, high, floor)
     start, stop = np.log(low + shift), np.log(high + shift)
     return np.exp(start + (stop - start) * fraction) - shift
 
 
-def _fraction(value: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str) -> np.ndarray:
+def _fraction(value: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str, floor: float = 0.0) -> np.ndarray:
     """The inverse of `_between`."""
     if scale == "linear":
         return (value - low) / (high - low)
     if scale == "log-complement":
-        return _fraction(1 - value, 1 - low, 1 - high, "log")
-    shift = _shift(low, high)
+        return _fraction(1 - value, 1 - low, 1 - high, "log", floor)
+    shift = _shift(low, high, floor)
     return np.log((value + shift) / (low + shift)) / np.log((high + shift) / (low + shift))
 
 
-def _shift(low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """What keeps a log scale off its pole: nothing, unless an end lies within `LOG_FLOOR` of zero."""
+def _shift(low: np.ndarray, high: np.ndarray, floor: float) -> np.ndarray:
+    """What keeps a log scale off its pole: nothing, unless an end lies nearer to it than the floor."""
     least = np.minimum(low, high)
-    return np.where(least < LOG_FLOOR, np.asarray(LOG_FLOOR, dtype=np.result_type(least)), 0).astype(least.dtype)
+    return np.where(least < floor, floor, 0.0).astype(np.result_type(least))

@@ -8,7 +8,7 @@ from importlib import resources
 from typing import Any
 
 from flapenv.aero.arrays import Real
-from flapenv.aero.checks import record, require_name, require_real
+from flapenv.aero.checks import record, require_name, require_real, require_scalar
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 
@@ -24,6 +24,13 @@ class HoverReference:
 
     weight_support: float
     specific_power: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check both."""
+        object.__setattr__(self, "weight_support", require_scalar("weight_support", self.weight_support))
+        if self.specific_power is not None:
+            power = require_scalar("specific_power", self.specific_power, unit="W/kg")
+            object.__setattr__(self, "specific_power", power)
 
 
 @record
@@ -43,10 +50,10 @@ class WingFactors:
 
     def __post_init__(self) -> None:
         """Check all, and fill in the product."""
-        if self.k_revolving is None:
-            object.__setattr__(self, "k_revolving", self.k_ind * self.k_tip)
-        for name in ("k_ind", "k_tip", "k_revolving"):
+        for name in ("k_ind", "k_tip"):
             object.__setattr__(self, name, require_real(name, getattr(self, name), 1.0))
+        product = self.k_ind * self.k_tip if self.k_revolving is None else self.k_revolving
+        object.__setattr__(self, "k_revolving", require_real("k_revolving", product, 1.0))
 
 
 @record

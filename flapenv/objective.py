@@ -1,6 +1,5 @@
 """The reward and the gaps: one batched objective for environments, agents and optimisers."""
 
-import math
 import warnings
 from collections.abc import Sequence
 from typing import Any
@@ -8,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero.checks import record
-from flapenv.aero.wingbeat import time_nodes
 from flapenv.insects import Insect
 from flapenv.optimum import Optimum, optimum
 from flapenv.performance import HoverCase, hover_averages, hover_case, stack_cases
@@ -70,7 +68,7 @@ class HoverObjective:
         self.insects, self.problem, self.dtype = tuple(insects), problem, np.dtype(dtype)
         self.optima: tuple[Optimum, ...] = tuple(optimum(insect, problem) for insect in self.insects)
         self.cases = stack_cases([hover_case(insect, problem.model) for insect in self.insects])
-        self.nodes = time_nodes(problem.box.flap_shape[1], problem.box.pitch_shape[1], tolerance=QUADRATURE_TOLERANCE)
+        self.nodes = problem.box.time_nodes(tolerance=QUADRATURE_TOLERANCE)
 
         feasible = np.array([best.feasible for best in self.optima])
         bound = np.array([best.lower_bound for best in self.optima])
@@ -78,15 +76,17 @@ class HoverObjective:
         multiplier = np.array([best.multiplier for best in self.optima])
         self.lift_penalty = self._lift_penalty(feasible, multiplier / bound)
         charge = np.where(np.isfinite(multiplier), multiplier, 0.0)
-        self._reference = {
+        self.gap_charge = np.maximum(LEAST_GAP_WEIGHT, 2 * charge / best_power)
+        reference = {
             "bound": bound,
             "optimum": np.where(feasible, best_power, bound),
             "penalty": self.lift_penalty,
             "bound_charge": np.maximum(LEAST_GAP_WEIGHT, 2 * charge / bound),
-            "charge": np.maximum(LEAST_GAP_WEIGHT, 2 * charge / best_power),
+            "charge": self.gap_charge,
         }
-        self._reference = {name: value.astype(self.dtype) for name, value in self._reference.items()}
+        self._reference = {name: value.astype(self.dtype) for name, value in reference.items()}
         self._feasible = feasible
+        self._warn_of_a_flat_reward()
 
     def _lift_penalty(self, feasible: np.ndarray, relative_multiplier: np.ndarray) -> np.ndarray:
         """λ of every insect, in units of its reference power."""
@@ -103,6 +103,17 @@ class HoverObjective:
                     stacklevel=4,
                 )
         return np.full(len(self.insects), float(wanted))
+
+    def _warn_of_a_flat_reward(self) -> None:
+        """A best reward below the floor would leave nothing to learn from."""
+        for best in self.optima:
+            reward = -best.specific_power / best.lower_bound
+            if best.feasible and reward <= self.problem.reward_floor:
+                warnings.warn(
+                    f"reward_floor = {self.problem.reward_floor:g} is above the reward {reward:.3g} of the optimum of "
+                    f"{best.insect}: every stroke that hovers is paid the same; lower reward_floor",
+                    stacklevel=4,
+                )
 
     def rows(self, index: np.ndarray) -> HoverCase:
         """The numbers of the insects at `index`, as arrays of the objective's type."""
@@ -144,5 +155,5 @@ class HoverObjective:
         best = self.optima[number]
         if not best.feasible:
             return None
-        charge = 2 * best.multiplier / best.specific_power if math.isfinite(best.multiplier) else 0.0
-        return specific_power / best.specific_power - 1 + max(LEAST_GAP_WEIGHT, charge) * max(0.0, 1 - weight_support)
+        deficit = max(0.0, 1 - weight_support)
+        return specific_power / best.specific_power - 1 + float(self.gap_charge[number]) * deficit

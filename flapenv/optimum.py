@@ -1,7 +1,7 @@
 """The least power that hovers: a proven lower bound, and the best stroke of the box found and verified.
 
 The bound holds for the paper's coefficients (2.7), (2.12), no profile drag, "elastic" power, a horizontal stroke
-plane, and every waveform φ(t), θ(t) within the limits stated; the proofs are in docs/optimum.md.
+plane, and every waveform φ(t), θ(t) within the limits that `lower_bound` states; the proofs are in docs/optimum.md.
 """
 
 import functools
@@ -10,18 +10,19 @@ from typing import Literal
 
 import numpy as np
 
-from flapenv.aero.checks import record
+from flapenv.aero.checks import is_single, record
 from flapenv.aero.stroke import Stroke
-from flapenv.aero.wingbeat import time_nodes
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.insects import Insect, as_insect
 from flapenv.performance import HoverCase, evaluate_by_blade_element, hover_averages, hover_case, lift_constant
 from flapenv.problem import HoverProblem, as_problem
 
-SAMPLES, STARTS = 512, 5
-"""Strokes drawn over the box, and the best of them from which the search starts."""
+SAMPLES, CANDIDATES, STARTS = 512, 64, 5
+"""Strokes drawn over the box, the best of them, and those of the best, far apart, that the search starts at."""
 STEP = 1e-4
 """Of the central differences, in units of the cube; the averages are good to 1e-10."""
+ORACLE_TOLERANCE = 1e-5
+"""Relative difference up to which the refined oracle confirms an optimum."""
 WEIGHT_TOLERANCE = 1e-7
 """Weight support short of one by less than this counts as carried."""
 
@@ -36,11 +37,11 @@ class Optimum:
         stroke: the best stroke of the box; the one with the largest lift where none carries the weight.
         weight_support: Λ of that stroke [-].
         specific_power: P* of that stroke [W/kg].
-        lower_bound: proven: no stroke or free waveform in scope hovers with less [W/kg].
+        lower_bound: proven: no stroke of the box hovers with less, nor any waveform in `lower_bound`'s scope [W/kg].
         max_weight_support: Λ_max, the largest Λ in the box [-].
         multiplier: dP*/dΛ of the optimum, what a unit of weight support costs [W/kg]; 0 where the weight does not
             bind, inf at the limit of lift.
-        active_bounds: "lower" or "upper" by the names of the parameters that lie on a bound.
+        active_bounds: name and "lower" or "upper" of every parameter that lies on a bound.
         oracle_weight_support: Λ of the stroke by the refined blade-element oracle [-].
         oracle_specific_power: P* by the same [W/kg].
         wingbeats: strokes evaluated by the search.
@@ -54,7 +55,7 @@ class Optimum:
     lower_bound: float
     max_weight_support: float
     multiplier: float
-    active_bounds: dict[str, str]
+    active_bounds: tuple[tuple[str, str], ...]
     oracle_weight_support: float
     oracle_specific_power: float
     wingbeats: int
@@ -70,9 +71,11 @@ def lower_bound(case: HoverCase, problem: HoverProblem) -> np.ndarray | float:
 
     With A_L = Λ/⟨v² sin 2α⟩ and A_P = P*/⟨v³ sin² α⟩ at the largest C_T of the box, the larger of
 
-        A_P h(α_min) A_L^(-1.5),  h(α) = sin² α/(sin 2α)^1.5     for α_min <= α(t) <= 180° - α_min, any speed;
-        A_P/(4 A_L² v̄_max)                                       for any α(t), mean speed up to v̄_max = 4 f φmax.
+        A_P h(α_min) A_L^(-1.5),  h(α) = sin² α/(sin 2α)^1.5     for α_min <= α(t) <= 180° - α_min and any φ(t);
+        A_P/(4 A_L² v̄_max)                                       for any α(t) and mean speeds up to v̄_max = 4 f φmax.
 
+    The first, which is the larger in the default box, holds for every waveform, the second for those that reverse once
+    at each end of the stroke, as all of (2.1) do: more reversals would raise the mean speed beyond 4 f φmax.
     Both decrease with C_T, which grows with φmax and with f, so its largest value in the box serves every stroke.
 
     Args:
@@ -107,11 +110,12 @@ def optimum(insect: Insect | str, problem: HoverProblem | str | None = None) -> 
     Raises:
         TypeError: for arguments of another kind, or an insect with array fields.
         ValueError: for an unknown name.
+        ArithmeticError: if the refined oracle does not confirm the stroke to 1e-5.
 
     Source: bounds by Jensen's and Cauchy-Schwarz' inequalities (docs/optimum.md); stroke by SLSQP from several starts.
     """
     insect, problem = as_insect(insect), as_problem(problem)
-    if np.ndim(insect.mass) or np.ndim(insect.wing.length) or np.ndim(insect.stroke.frequency):
+    if not is_single(insect):
         raise TypeError("insect has array fields; allowed: one insect with scalar fields")
     return _solve(insect, problem)
 
@@ -122,19 +126,21 @@ def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
     search = _Search(insect, problem)
     samples = search.samples()
     weight, power = search.evaluate(samples)
-    best_lift = search.minimise("lift", samples[np.argsort(-weight)[:STARTS]])
+    best_lift = search.minimise("lift", _spread(samples[np.argsort(-weight)[:CANDIDATES]]))
     max_weight_support = float(search.evaluate(best_lift)[0])
     feasible = max_weight_support >= 1 - WEIGHT_TOLERANCE
     point = best_lift
     if feasible:
         merit = np.log(power) + 4 * np.maximum(0, 1 - weight)
-        starts = np.concatenate([samples[np.argsort(merit)[: STARTS - 1]], best_lift[None]])
-        point = search.minimise("power", starts)
+        starts = np.concatenate([_spread(samples[np.argsort(merit)[:CANDIDATES]]), best_lift[None]])
+        point = search.settle(search.minimise("power", starts))
     weight_support, specific_power = (float(value) for value in search.evaluate(point))
     stroke = search.stroke(point)
     checked = evaluate_by_blade_element(
         insect, stroke, strips=8, steps=40_000, spacing="gauss-jacobi", **vars(problem.model)
     )
+    if not np.allclose(checked, (weight_support, specific_power), rtol=ORACLE_TOLERANCE, atol=0):
+        raise ArithmeticError(f"{insect.name}: the oracle finds {checked}, the search {weight_support, specific_power}")
     return Optimum(
         insect=insect.name,
         feasible=feasible,
@@ -151,13 +157,22 @@ def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
     )
 
 
+def _spread(points: np.ndarray) -> np.ndarray:
+    """`STARTS` of the points, the first and then always the one farthest from all chosen: a start for every basin."""
+    chosen = points[:1]
+    while len(chosen) < min(STARTS, len(points)):
+        distances = np.linalg.norm(points[:, None] - chosen, axis=-1).min(axis=1)
+        chosen = np.concatenate([chosen, points[[np.argmax(distances)]]])
+    return chosen
+
+
 class _Search:
     """Multi-start SLSQP over the box's cube, with batched central differences."""
 
     def __init__(self, insect: Insect, problem: HoverProblem) -> None:
         self.problem, self.case = problem, hover_case(insect, problem.model)
         self.coordinates = StrokeCoordinates(problem.box, scaling="log")
-        self.nodes = time_nodes(problem.box.flap_shape[1], problem.box.pitch_shape[1])
+        self.nodes = problem.box.time_nodes(tolerance=1e-9)
         self.wingbeats = 0
         self._last: tuple[np.ndarray, tuple[float, float, np.ndarray, np.ndarray]] | None = None
 
@@ -226,26 +241,36 @@ class _Search:
                 best, best_value = point, value(point)
         return best
 
+    def settle(self, point: np.ndarray) -> np.ndarray:
+        """The point with its frequency lowered to carry just the weight, where the search stopped a little above it."""
+        weight = float(self.evaluate(point)[0])
+        values, _ = self.coordinates.decode(point, self.case.reference_frequency)
+        low = self.problem.box.bounds("frequency", self.case.reference_frequency)[0]
+        slower = values["frequency"] / math.sqrt(weight)
+        if "frequency" not in self.coordinates.names or not 1 < weight < 1.01 or slower < low:
+            return point
+        return self.coordinates.encode({**values, "frequency": slower}, self.case.reference_frequency)
+
     def multiplier(self, point: np.ndarray) -> float:
         """dP*/dΛ from stationarity along the axes that do not lie on a face."""
         if not len(self.coordinates):
             return math.inf
         weight, _, by_weight, by_power = self.local(point)
-        if weight > 1 + 1e-6:
+        if weight > 1 + 1e-4:
             return 0.0
         inner = np.abs(point) < 1 - 1e-6
         lift = by_weight[inner]
         strength = float(lift @ lift)
         return float(lift @ by_power[inner]) / strength if strength > 1e-12 else math.inf
 
-    def active_bounds(self, stroke: Stroke) -> dict[str, str]:
+    def active_bounds(self, stroke: Stroke) -> tuple[tuple[str, str], ...]:
         """Which parameters lie on a bound."""
-        active = {}
+        active = []
         for name in self.coordinates.names:
             low, high = self.problem.box.bounds(name, self.case.reference_frequency)
             value, slack = getattr(stroke, name), 1e-5 * (high - low)
             if value >= high - slack:
-                active[name] = "upper"
+                active.append((name, "upper"))
             elif value <= low + slack:
-                active[name] = "lower"
-        return active
+                active.append((name, "lower"))
+        return tuple(active)

@@ -6,9 +6,9 @@ from typing import Any, Literal
 import numpy as np
 
 from flapenv.aero import induced
-from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result
+from flapenv.aero.arrays import Real, as_arrays, as_result
 from flapenv.aero.blade_element import STEPS, STRIPS, blade_element
-from flapenv.aero.checks import record, require_name, require_real
+from flapenv.aero.checks import is_single, record, require_flag, require_name, require_scalar
 from flapenv.aero.coefficients import SECTION_LIFT_SLOPE, translational_lift_constant
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wingbeat import speed_averages, time_nodes
@@ -40,11 +40,10 @@ class HoverModel:
     def __post_init__(self) -> None:
         """Check every option."""
         for name, unit in (("air_density", "kg/m³"), ("gravity", "m/s²"), ("section_lift_slope", "1/rad")):
-            value = require_real(name, getattr(self, name), 0.0, open_low=True, unit=unit)
+            value = require_scalar(name, getattr(self, name), 0.0, open_low=True, unit=unit)
             object.__setattr__(self, name, value)
         require_name("tip_loss", self.tip_loss, ("reference", "stroke"))
-        if not isinstance(self.induced, bool):
-            raise TypeError(f"induced = {self.induced!r} is not allowed; allowed: True, False")
+        require_flag("induced", self.induced)
 
 
 @record
@@ -181,7 +180,10 @@ def hover_averages(
         Weight support and specific power, of the broadcast shape.
     """
     lift_average, power_average = speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, nodes=nodes)
-    _, speed, lift_scale, power_scale = as_arrays(4 * frequency * flap_amplitude, case.lift_scale, case.power_scale)
+    _, frequency, flap_amplitude, lift_scale, power_scale = as_arrays(
+        frequency, flap_amplitude, case.lift_scale, case.power_scale
+    )
+    speed = 4 * frequency * flap_amplitude
     constant = lift_constant(case, model, speed, flap_amplitude)
     weight_support = lift_scale * constant * speed**2 * lift_average
     specific_power = 2 * power_scale * constant * speed**3 * power_average
@@ -210,25 +212,36 @@ def evaluate(
 
     Source: Nabawy & Crowther (2014), Part II, (2.1)-(2.12) and section 3.3.
     """
-    insect = as_insect(insect)
-    stroke = insect.stroke if stroke is None else stroke
-    if not isinstance(stroke, Stroke):
-        raise TypeError(f"stroke = {stroke!r} is not allowed; allowed: a Stroke, or None for the insect's own")
-    options = HoverModel(**model)
-    if options.induced:
-        induced.k_flap(as_numpy(stroke.flap_amplitude))  # refuses what the model has no answer for
+    insect, stroke, options = _checked(insect, stroke, model)
     case = hover_case(insect, options)
     nodes = time_nodes(stroke.flap_shape, stroke.pitch_shape, tolerance=tolerance)
     weight_support, specific_power = hover_averages(case, options, **vars(stroke), nodes=nodes)
-    k = induced_power_factor(case, options, stroke.mean_flap_speed, stroke.flap_amplitude)
-    return HoverPerformance(
-        weight_support=as_result(weight_support),
-        specific_power=as_result(specific_power),
-        lift=as_result(weight_support * insect.mass * options.gravity),
-        power=as_result(specific_power * insect.mass),
-        lift_constant=as_result(lift_constant(case, options, stroke.mean_flap_speed, stroke.flap_amplitude)),
-        induced_power_factor=as_result(k),
+    xp, frequency, amplitude, weight_support, specific_power, mass = as_arrays(
+        stroke.frequency, stroke.flap_amplitude, weight_support, specific_power, insect.mass
     )
+    speed = 4 * frequency * amplitude
+    fields = {
+        "weight_support": weight_support,
+        "specific_power": specific_power,
+        "lift": weight_support * mass * options.gravity,
+        "power": specific_power * mass,
+        "lift_constant": lift_constant(case, options, speed, amplitude),
+        "induced_power_factor": induced_power_factor(case, options, speed, amplitude),
+    }
+    _, *values = as_arrays(*fields.values())
+    values = [as_result(xp.broadcast_to(value, weight_support.shape)) for value in values]
+    return HoverPerformance(**dict(zip(fields, values, strict=True)))
+
+
+def _checked(insect: Insect | str, stroke: Stroke | None, model: dict[str, Any]) -> tuple[Insect, Stroke, HoverModel]:
+    """What both ways of evaluating take, checked alike."""
+    insect, options = as_insect(insect), HoverModel(**model)
+    stroke = insect.stroke if stroke is None else stroke
+    if not isinstance(stroke, Stroke):
+        raise TypeError(f"stroke = {stroke!r} is not allowed; allowed: a Stroke, or None for the insect's own")
+    if options.induced:
+        induced.k_flap(stroke.flap_amplitude)  # refuses amplitudes that the model has no answer for
+    return insect, stroke, options
 
 
 def evaluate_by_blade_element(
@@ -240,10 +253,15 @@ def evaluate_by_blade_element(
     spacing: str = "even",
     **model: Any,
 ) -> tuple[float, float]:
-    """Λ [-] and P* [W/kg] of one stroke by the blade-element oracle; arguments as in `blade_element`, `evaluate`."""
-    insect = as_insect(insect)
-    stroke = insect.stroke if stroke is None else stroke
-    options = HoverModel(**model)
+    """Λ [-] and P* [W/kg] of one stroke by the blade-element oracle; arguments as in `blade_element`, `evaluate`.
+
+    Raises:
+        TypeError: for what `evaluate` refuses, and for an insect or a stroke with array fields.
+        ValueError: for what `evaluate` and `blade_element` refuse.
+    """
+    insect, stroke, options = _checked(insect, stroke, model)
+    if not (is_single(insect) and is_single(stroke)):
+        raise TypeError("insect or stroke has array fields; allowed: one insect and one stroke with scalar fields")
     constant = lift_constant(hover_case(insect, options), options, stroke.mean_flap_speed, stroke.flap_amplitude)
     history = blade_element(
         insect.wing,

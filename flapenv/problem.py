@@ -8,8 +8,9 @@ from typing import Any, Literal
 import numpy as np
 
 from flapenv.aero.arrays import Real
-from flapenv.aero.checks import record, require_name, require_real
+from flapenv.aero.checks import record, require_name, require_scalar
 from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.wingbeat import time_nodes
 from flapenv.performance import HoverModel
 
 Interval = tuple[float, float]
@@ -22,7 +23,7 @@ class StrokeBox:
     Each bound is a pair (lower, upper) or one number, which fixes the parameter.
 
     Attributes:
-        frequency_ratio: f over the insect's reference frequency [-]; not used where `frequency` is given.
+        frequency_ratio: f over the insect's reference frequency [-]; the default unless `frequency` is given.
         frequency: f [Hz], in place of `frequency_ratio`.
         flap_amplitude: φmax [rad].
         flap_shape: Cφ [-].
@@ -35,7 +36,7 @@ class StrokeBox:
         ValueError: for lower > upper, or a bound outside the parameter's valid range.
     """
 
-    frequency_ratio: Interval = STROKE_PARAMETERS["frequency"].box
+    frequency_ratio: Interval | None = None
     frequency: Interval | None = None
     flap_amplitude: Interval = STROKE_PARAMETERS["flap_amplitude"].box
     flap_shape: Interval = STROKE_PARAMETERS["flap_shape"].box
@@ -45,17 +46,26 @@ class StrokeBox:
 
     def __post_init__(self) -> None:
         """Bring every bound to a checked pair of floats."""
+        if self.frequency is None and self.frequency_ratio is None:
+            object.__setattr__(self, "frequency_ratio", STROKE_PARAMETERS["frequency"].box)
+        elif self.frequency is not None and self.frequency_ratio is not None:
+            raise ValueError(
+                f"frequency = {self.frequency} and frequency_ratio = {self.frequency_ratio} both bound the frequency; "
+                "allowed: one of them"
+            )
         for field, value in vars(self).copy().items():
-            if field == "frequency" and value is None:
-                continue
-            object.__setattr__(self, field, _interval(field, value))
+            if value is not None:
+                object.__setattr__(self, field, _interval(field, value))
+            elif field not in ("frequency", "frequency_ratio"):
+                raise TypeError(f"bounds of {field} = None are not allowed; allowed: (lower, upper) or one number")
 
     def bounds(self, name: str, reference_frequency: Real) -> tuple[Real, Real]:
         """Lower and upper bound of a stroke parameter [its SI unit], the frequency for the given reference [Hz]."""
         if name != "frequency":
             low, high = getattr(self, name)
             return low, high
-        if self.frequency is not None:
+        if self.frequency_ratio is None:
+            assert self.frequency is not None
             return self.frequency
         low, high = self.frequency_ratio
         return low * reference_frequency, high * reference_frequency
@@ -64,6 +74,12 @@ class StrokeBox:
         """Whether the parameter may vary."""
         low, high = self.bounds(name, 1.0)
         return bool(high > low)
+
+    def time_nodes(self, *, tolerance: float) -> int:
+        """Nodes of the time quadrature that serve every stroke of the box; see `flapenv.aero.wingbeat.time_nodes`."""
+        low, high = self.flap_shape
+        sharpest = np.nextafter(1.0, 0.0) if low < high == 1 else high  # as near to the triangle as a stroke can be
+        return time_nodes(sharpest, self.pitch_shape[1], tolerance=tolerance)
 
     @property
     def free(self) -> tuple[str, ...]:
@@ -74,8 +90,8 @@ class StrokeBox:
 def _interval(field: str, value: Any) -> Interval:
     """A checked (lower, upper) from a pair or a single number."""
     name = "frequency" if field == "frequency_ratio" else field
-    ends = tuple(value) if isinstance(value, list | tuple | np.ndarray) else (value, value)
-    if len(ends) != 2:
+    ends = tuple(value) if isinstance(value, list | tuple) or np.ndim(value) else (value, value)
+    if len(ends) != 2 or any(np.ndim(end) for end in ends):
         raise TypeError(f"bounds of {field} = {value!r} are not allowed; allowed: (lower, upper) or one number")
     low, high = (
         float(np.asarray(STROKE_PARAMETERS[name].check(end, field=f"{which} bound of {field}")))
@@ -94,7 +110,7 @@ class HoverProblem:
     bounded, so that the optimum is known with a proof.
 
     Attributes:
-        name: what tables and files call it.
+        name: what tables and files call it; where None, the preset's name or "custom".
         box: the search box; a dict overrides single bounds of the default.
         model: the aerodynamic options; a dict overrides single ones.
         lift_penalty: λ of the reward, in units of the reference power per unit of missing weight support, > 0;
@@ -106,7 +122,7 @@ class HoverProblem:
         ValueError: for a value outside its range.
     """
 
-    name: str = "free-frequency"
+    name: str | None = None
     box: StrokeBox = StrokeBox()
     model: HoverModel = HoverModel()
     lift_penalty: float | Literal["auto"] = "auto"
@@ -114,8 +130,8 @@ class HoverProblem:
 
     def __post_init__(self) -> None:
         """Check every field; box and model may be dicts."""
-        if not isinstance(self.name, str) or not self.name:
-            raise TypeError(f"name = {self.name!r} is not allowed; allowed: a non-empty string")
+        if self.name is not None and (not isinstance(self.name, str) or not self.name):
+            raise TypeError(f"name = {self.name!r} is not allowed; allowed: a non-empty string, or None")
         for field, kind in (("box", StrokeBox), ("model", HoverModel)):
             value = getattr(self, field)
             if isinstance(value, Mapping):
@@ -125,13 +141,18 @@ class HoverProblem:
         if isinstance(self.lift_penalty, str):
             require_name("lift_penalty", self.lift_penalty, ("auto",))
         else:
-            require_real("lift_penalty", self.lift_penalty, 0.0, open_low=True)
-        require_real("reward_floor", self.reward_floor, high=0.0, open_high=True)
+            penalty = require_scalar("lift_penalty", self.lift_penalty, 0.0, open_low=True)
+            object.__setattr__(self, "lift_penalty", penalty)
+        floor = require_scalar("reward_floor", self.reward_floor, high=0.0, open_high=True)
+        object.__setattr__(self, "reward_floor", floor)
         if self.model.induced and self.box.flap_amplitude[1] > math.pi / 2:
             raise ValueError(
                 f"upper bound of flap_amplitude = {self.box.flap_amplitude[1]:.6g} is not allowed; allowed: up to "
                 "1.5708 rad where k_flap is used, more only with model={'induced': False}"
             )
+        if self.name is None:
+            same = self.box == StrokeBox() and self.model == HoverModel()
+            object.__setattr__(self, "name", "free-frequency" if same else "custom")
 
     @property
     def min_angle_of_attack(self) -> float:

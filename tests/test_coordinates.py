@@ -1,5 +1,6 @@
 """Action coordinates."""
 
+import itertools
 import math
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from flapenv import StrokeBox
+from flapenv import Stroke, StrokeBox, evaluate, load_insect
 from flapenv.coordinates import SCALINGS, StrokeCoordinates
 
 POINTS = arrays(np.float64, (5, 6), elements=st.floats(-1, 1))
@@ -22,9 +23,9 @@ def test_every_point_is_a_stroke_of_the_box(points: np.ndarray) -> None:
             for dtype in (np.float32, np.float64):
                 values, _ = StrokeCoordinates(box, scaling=scaling).decode(points.astype(dtype), 26.3)
                 for name, value in values.items():
-                    low, high = (np.asarray(bound, dtype=dtype) for bound in box.bounds(name, 26.3))
+                    low, high = box.bounds(name, 26.3)
                     assert value.dtype == dtype
-                    assert np.all((low <= value) & (value <= high)), name
+                    assert np.all((low <= value.astype(float)) & (value.astype(float) <= high)), name
 
 
 @given(POINTS)
@@ -63,6 +64,15 @@ def test_corners_are_not_flagged_in_single_precision() -> None:
     corners = np.array([[-1, -1, -1, -1, -1, -1], [1, 1, 1, 1, 1, 1]], dtype=np.float32)
     for reference in (26.3, 254.0, 45.5):
         assert coordinates.decode(corners, reference)[1].tolist() == [False, False]
+
+
+def test_single_precision_corners_are_valid_strokes_that_evaluate_takes() -> None:
+    box = StrokeBox(pitch_amplitude=(0.0, math.pi / 2), pitch_phase=(-2 * math.pi, 2 * math.pi))
+    for name in ("hawkmoth", "cranefly"):
+        reference = load_insect(name).stroke.frequency
+        for corner in itertools.product([-1, 1], repeat=6):
+            values, _ = StrokeCoordinates(box).decode(np.array(corner, dtype=np.float32), reference)
+            evaluate(name, Stroke(**{key: float(value) for key, value in values.items()}))
 
 
 def test_fixed_parameters_have_no_axis_and_a_fixed_amplitude_leaves_the_frequency() -> None:

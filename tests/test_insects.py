@@ -61,6 +61,10 @@ def test_replace_validates_again() -> None:
         dataclasses.replace(OWN, wing=3)
     with pytest.raises(TypeError, match="name = ''"):
         dataclasses.replace(OWN, name="")
+    with pytest.raises(TypeError, match="k_ind = 'a' is not a real number"):
+        dataclasses.replace(OWN, k_table={"k_ind": "a", "k_tip": 1.1})
+    with pytest.raises(TypeError, match="weight_support = 'x'"):
+        dataclasses.replace(OWN, cfd={"weight_support": "x"})
     with pytest.raises(ValueError, match=r"k_ind = 0.9 .*\[1, inf\)"):
         dataclasses.replace(OWN, k_table={"k_ind": 0.9, "k_tip": 1.1})
 

@@ -60,11 +60,16 @@ def test_penalties_are_twice_the_multiplier_at_least_three_and_ten_where_infeasi
     assert HoverObjective([insect], HoverProblem()).lift_penalty[0] == pytest.approx(expected, rel=1e-3)
     hopeless = HoverProblem(box={"frequency_ratio": (0.1, 0.2)})
     assert HoverObjective([insect], hopeless).lift_penalty[0] == 10
-    slack = HoverProblem(box={"frequency_ratio": (8.0, 9.0)})
+    slack = HoverProblem(box={"frequency_ratio": (6.0, 7.0)})
     assert HoverObjective([insect], slack).lift_penalty[0] == 3
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert HoverObjective([insect], HoverProblem(lift_penalty=4)).lift_penalty[0] == 4
+
+
+def test_a_floor_above_the_best_reward_is_warned_about() -> None:
+    with pytest.warns(UserWarning, match=r"reward_floor = -1 is above the reward -1\.05 of the optimum of hawkmoth"):
+        HoverObjective([load_insect("hawkmoth")], HoverProblem(reward_floor=-1))
 
 
 def test_terms_add_up_to_the_reward_above_its_floor(insect: Insect, rng: np.random.Generator) -> None:

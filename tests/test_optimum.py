@@ -42,8 +42,8 @@ def test_the_default_optimum_is_the_known_one_and_lies_4_to_5_percent_above_the_
 
 def test_the_default_optimum_is_at_the_corner_the_proof_names_with_symmetric_rotation(insect: Insect) -> None:
     best = optimum(insect)
-    corner = dict.fromkeys(("flap_amplitude", "flap_shape", "pitch_shape", "pitch_amplitude"), "upper")
-    assert best.active_bounds == corner
+    corner = ("flap_amplitude", "flap_shape", "pitch_shape", "pitch_amplitude")
+    assert best.active_bounds == tuple((name, "upper") for name in corner)
     assert best.stroke.pitch_phase == pytest.approx(math.pi / 2, abs=1e-4)
     assert 0.53 < best.stroke.frequency / insect.stroke.frequency < 1.26
 
@@ -198,13 +198,44 @@ def test_the_optimum_beats_every_random_stroke_that_hovers(rng: np.random.Genera
     assert np.min(result.specific_power[result.weight_support >= 1]) > best.specific_power
 
 
+def test_a_larger_box_is_never_worse_however_far_its_logarithmic_axes_reach() -> None:
+    pitch = {"pitch_amplitude": (0.0, math.pi / 2)}
+    inner = optimum("fruitfly", HoverProblem(box={**pitch, "pitch_shape": (0.1, 100.0)}))
+    outer = optimum("fruitfly", HoverProblem(box={**pitch, "pitch_shape": (0.0, 100.0), "flap_shape": (0.0, 0.99)}))
+    widest = optimum("fruitfly", HoverProblem(box={**pitch, "pitch_shape": (0.0, 1e5), "flap_shape": (0.0, 1.0)}))
+    assert inner.specific_power * (1 + 1e-6) >= outer.specific_power >= widest.specific_power * (1 - 1e-6)
+
+
+def test_of_two_basins_the_better_is_found() -> None:
+    box = {"flap_amplitude": 0.8549047, "pitch_amplitude": (0.8223994, 1.4752932)}
+    best = optimum("bumblebee", HoverProblem(box=box, model={"tip_loss": "stroke"}))
+    starts = [{"flap_shape": (0.9, 0.99), "pitch_shape": (8, 10)}, {"flap_shape": (0.01, 0.2), "pitch_shape": (2, 5)}]
+    for start in starts:
+        part = optimum("bumblebee", HoverProblem(box={**box, **start}, model={"tip_loss": "stroke"}))
+        assert best.specific_power <= part.specific_power * (1 + 1e-6)
+
+
+def test_the_bound_of_any_waveform_is_the_angle_bound_which_wins_in_the_default_box(insect: Insect) -> None:
+    slow = HoverProblem(box={"frequency_ratio": (1e-3, 1.5)})  # its speed bound is no larger
+    case = hover_case(insect, HoverModel())
+    assert float(lower_bound(case, HoverProblem())) == float(lower_bound(case, slow))
+    fixed = HoverProblem(box={"frequency_ratio": (0.1, 0.35)})
+    assert float(lower_bound(case, fixed)) >= float(lower_bound(case, HoverProblem()))
+
+
 def test_each_pair_of_insect_and_problem_is_solved_once() -> None:
     assert optimum("fruitfly") is optimum(load_insect("fruitfly"), HoverProblem())
 
 
 def test_what_is_not_one_insect_is_refused() -> None:
-    with pytest.raises(TypeError, match="insect has array fields"):
-        optimum(dataclasses.replace(HAWKMOTH, mass=np.array([1e-3, 2e-3])))
+    several = np.array([0.3, 0.5])
+    for herd in (
+        dataclasses.replace(HAWKMOTH, mass=several),
+        dataclasses.replace(HAWKMOTH, wing=dataclasses.replace(HAWKMOTH.wing, r1_hat=several)),
+        dataclasses.replace(HAWKMOTH, stroke=dataclasses.replace(HAWKMOTH.stroke, pitch_shape=several)),
+    ):
+        with pytest.raises(TypeError, match="insect has array fields"):
+            optimum(herd)
     with pytest.raises(ValueError, match="insect = 'moth'"):
         optimum("moth")
     with pytest.raises(TypeError, match="problem = 3"):

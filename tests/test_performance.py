@@ -115,6 +115,31 @@ def test_tensors_go_through_and_keep_their_gradient() -> None:
     np.testing.assert_allclose(slope.numpy(), 3 * arrays.specific_power / np.array([20.0, 30.0]), rtol=1e-12)
 
 
+def test_every_field_has_the_broadcast_shape() -> None:
+    result = evaluate(HAWKMOTH, dataclasses.replace(HAWKMOTH.stroke, frequency=np.array([20.0, 30.0])))
+    assert {np.shape(value) for value in vars(result).values()} == {(2,)}
+
+
+def test_tensors_and_arrays_mix() -> None:
+    torch = pytest.importorskip("torch")
+    mixed = dataclasses.replace(
+        HAWKMOTH.stroke, frequency=torch.tensor([20.0, 30.0]).double(), flap_amplitude=np.array([1.0, 1.2])
+    )
+    arrays = dataclasses.replace(mixed, frequency=np.array([20.0, 30.0]))
+    np.testing.assert_allclose(evaluate(HAWKMOTH, mixed).power.numpy(), evaluate(HAWKMOTH, arrays).power, rtol=1e-12)
+    with pytest.raises(ValueError, match="flap_amplitude"):
+        evaluate(HAWKMOTH, dataclasses.replace(mixed, flap_amplitude=torch.tensor(3.0)))
+
+
+def test_the_oracle_takes_one_stroke_and_refuses_what_evaluate_refuses() -> None:
+    with pytest.raises(TypeError, match="array fields"):
+        evaluate_by_blade_element(HAWKMOTH, dataclasses.replace(HAWKMOTH.stroke, frequency=np.full(500, 26.0)))
+    with pytest.raises(ValueError, match="flap_amplitude"):
+        evaluate_by_blade_element(HAWKMOTH, dataclasses.replace(HAWKMOTH.stroke, flap_amplitude=2.0))
+    with pytest.raises(TypeError, match=r"stroke = \{\}"):
+        evaluate_by_blade_element(HAWKMOTH, {})
+
+
 def test_a_scalar_evaluation_returns_python_floats() -> None:
     assert {type(value) for value in vars(evaluate("hawkmoth")).values()} == {float}
 

@@ -4,6 +4,7 @@ import json
 import math
 import pickle
 
+import numpy as np
 import pytest
 
 from flapenv import HoverProblem, StrokeBox
@@ -60,6 +61,9 @@ def test_problems_are_hashable_pickle_and_survive_json() -> None:
         ({"pitch_phase": (float("nan"), 1)}, ValueError, "lower bound of pitch_phase = nan"),
         ({"pitch_shape": (1, 2, 3)}, TypeError, "bounds of pitch_shape"),
         ({"pitch_shape": "wide"}, TypeError, "bound of pitch_shape = 'wide'"),
+        ({"pitch_shape": ([0.1, 0.2], [0.3, 0.4])}, TypeError, "bounds of pitch_shape"),
+        ({"pitch_shape": None}, TypeError, "bounds of pitch_shape = None"),
+        ({"frequency": (10, 20), "frequency_ratio": (0.5, 1)}, ValueError, "both bound the frequency"),
         ({"flap_shap": (0, 1)}, TypeError, "did you mean 'flap_shape'"),
     ],
 )
@@ -73,6 +77,8 @@ def test_bad_bounds_are_named(box: dict[str, object], kind: type[Exception], sai
     [
         ({"lift_penalty": 0.0}, ValueError, "lift_penalty = 0 "),
         ({"lift_penalty": "much"}, ValueError, "lift_penalty = 'much' is unknown; allowed: auto"),
+        ({"lift_penalty": [3.0]}, TypeError, "lift_penalty = .* one number"),
+        ({"model": {"air_density": [1.0, 2.0]}}, TypeError, "air_density = .* one number"),
         ({"reward_floor": 1.0}, ValueError, "reward_floor = 1 "),
         ({"box": 3}, TypeError, "box = 3"),
         ({"name": 3}, TypeError, "name = 3"),
@@ -83,6 +89,12 @@ def test_bad_bounds_are_named(box: dict[str, object], kind: type[Exception], sai
 def test_bad_problems_are_named(fields: dict[str, object], kind: type[Exception], said: str) -> None:
     with pytest.raises(kind, match=said):
         HoverProblem(**fields)
+
+
+def test_a_problem_of_ones_own_is_not_called_by_the_presets_name() -> None:
+    assert HoverProblem(box={"flap_shape": 0.5}).name == "custom"
+    assert HoverProblem(lift_penalty=np.float32(5)).name == "free-frequency"
+    assert HoverProblem(name="mine", box={"flap_shape": np.array(0.5)}).name == "mine"
 
 
 def test_unknown_problems_are_refused() -> None:

@@ -39,7 +39,8 @@ def as_arrays(*values: Real) -> tuple[Any, ...]:
         torch: ModuleType = sys.modules["torch"]
         floating = [tensor.dtype for tensor in tensors if tensor.is_floating_point()]
         dtype = functools.reduce(torch.promote_types, floating) if floating else torch.get_default_dtype()
-        return (torch, *(torch.as_tensor(v, dtype=dtype, device=tensors[0].device) for v in values))
+        own = (v if is_tensor(v) else np.array(v) for v in values)  # checked arrays are read-only, tensors may not be
+        return (torch, *(torch.as_tensor(v, dtype=dtype, device=tensors[0].device) for v in own))
     kinds = [v if isinstance(v, int | float) else np.asarray(v).dtype for v in values]
     dtype = np.result_type(np.float16, *kinds) if kinds else np.dtype(float)
     if dtype == np.float16:  # Python scalars alone carry no type

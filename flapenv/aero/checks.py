@@ -139,7 +139,7 @@ def require_flag(field: str, value: object) -> bool:
     return value
 
 
-def is_single(value: object) -> bool:
+def is_single(value: Any) -> bool:
     """Whether a value, or every field of a record and of the records in it, is free of array axes."""
     if is_dataclass(value) and not isinstance(value, type):
         return all(is_single(part) for part in vars(value).values())

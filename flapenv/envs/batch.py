@@ -8,7 +8,7 @@ from gymnasium import error, spaces
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from flapenv.aero.checks import allowed, require_count, require_real
+from flapenv.aero.checks import allowed, require_count
 
 Info = dict[str, Any]
 RENDER_MODES = ("rgb_array",)
@@ -37,12 +37,24 @@ def require_render_mode(value: str | None) -> str | None:
     return value
 
 
+def require_seed(seed: Any) -> int | None:
+    """A seed as Gymnasium takes it.
+
+    Raises:
+        TypeError: if it is not a whole number.
+        ValueError: if it is negative.
+    """
+    return None if seed is None else require_count("seed", seed, low=0)
+
+
 def require_options(options: dict[str, Any] | None, known: tuple[str, ...]) -> dict[str, Any]:
     """The reset options, all of them known.
 
     Raises:
         ValueError: for an unknown key.
     """
+    if options is not None and not isinstance(options, dict):
+        raise TypeError(f"options = {options!r} are not allowed; allowed: a dict with keys of {known}, or None")
     options = dict(options or {})
     for key in options:
         if key not in known:
@@ -110,13 +122,10 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
             Observations (num_envs, n) and infos, where `_key` masks the rows that have `key`.
 
         Raises:
-            TypeError: for a seed or mask of another type.
+            TypeError: for a seed, mask or options of another type.
             ValueError: for an unknown option or a mask of another shape or without a True.
         """
-        if seed is not None:
-            require_count("seed", seed, low=0)
-            seed = int(seed)
-        super().reset(seed=seed)
+        super().reset(seed=require_seed(seed))
         options = require_options(options, ("reset_mask", *self.reset_options))
         mask = self._reset_mask(options.pop("reset_mask", None))
         if not self._begun and not mask.all():
@@ -126,7 +135,7 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self._begun = True
         return self._observe(), _masked(info, mask)
 
-    def step(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
+    def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
         """One wingbeat in every row, with the autoreset of the environment's mode.
 
         Args:
@@ -199,7 +208,11 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         if array.shape != self.action_space.shape:
             raise ValueError(f"actions of shape {array.shape} are not allowed; allowed: {self.action_space.shape}")
         if not np.isfinite(array).all():
-            require_real("actions", array)
+            row = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+            raise ValueError(
+                f"actions[{', '.join(map(str, row))}] = {array[row]} is not allowed; allowed: finite, in [-1, 1] "
+                "(beyond it they are clipped)"
+            )
         return np.clip(array, -2, 2).astype(np.float32)  # beyond ±1 still shows as clipped, and no cast overflows
 
 

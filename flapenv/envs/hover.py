@@ -1,5 +1,7 @@
 """flapenv/Hover-v0: one step is one wingbeat; hover with the least power. Native vector env, and its batch of one."""
 
+import inspect
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -8,10 +10,11 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
-from flapenv.aero.checks import require_name
+from flapenv.aero.checks import allowed, require_flag, require_name
+from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
-from flapenv.envs.batch import BatchEnv, Info
+from flapenv.envs.batch import BatchEnv, Info, require_seed
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.objective import HoverObjective, Score
 from flapenv.optimum import optimum
@@ -21,6 +24,7 @@ from flapenv.problem import PROBLEMS, HoverProblem, as_problem
 InsectChoice = str | Insect | Mapping[str, Any] | Sequence[Any]
 ProblemChoice = str | HoverProblem | Mapping[str, Any]
 OBSERVATION_LIMIT = 5.0
+NOT_YET = -1
 DEFAULT_PROBLEM = next(iter(PROBLEMS))
 
 
@@ -57,7 +61,7 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
         margins = ", ".join(f"{name} (largest {best.max_weight_support:.3f})" for name, best in infeasible.items())
         dropped = everyone and not include_infeasible
         fate = "left out" if dropped else "kept; the aim is their largest weight support"
-        gym.logger.warn(f"no stroke of the box carries the weight of {margins}: {fate}")
+        warnings.warn(f"no stroke of the box carries the weight of {margins}: {fate}", stacklevel=3)
         if dropped:
             insects = tuple(insect for insect in insects if insect.name not in infeasible)
     if not insects:
@@ -69,6 +73,7 @@ class HoverVectorEnv(BatchEnv):
     """Batched `HoverEnv`, which describes actions, observations and rewards: one step is one wingbeat in every row.
 
     Rows are independent but for the one generator that draws their insects, in row order, whatever the others do.
+    Batches of different sizes agree to rounding.
     """
 
     reset_options = ("insect",)
@@ -82,8 +87,9 @@ class HoverVectorEnv(BatchEnv):
         include_infeasible: bool = False,
         action_scaling: Scaling = "tip-speed",
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        dtype: str = "float32",
+        dtype: Any = "float32",
         render_mode: str | None = None,
+        **unknown: Any,
     ) -> None:
         """Solve the references of all insects (once per process) and set up the spaces.
 
@@ -96,14 +102,19 @@ class HoverVectorEnv(BatchEnv):
             autoreset_mode: an `AutoresetMode` or its name.
             dtype: "float32" or "float64", of the computation; observations and actions are float32 always.
             render_mode: "rgb_array" or None.
+            **unknown: refused, with the names that exist.
 
         Raises:
-            TypeError: for an argument of another kind.
+            TypeError: for an unknown argument or one of another kind.
             ValueError: for an unknown name or a value outside its range.
         """
+        for name, value in unknown.items():
+            known = [key for key in inspect.signature(HoverVectorEnv).parameters if key != "unknown"]
+            raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
+        require_flag("include_infeasible", include_infeasible)
         self.problem = as_problem(problem)
         self.insects = choose_insects(insect, self.problem, include_infeasible=include_infeasible)
-        self.dtype = np.dtype(require_name("dtype", str(dtype), ("float32", "float64")))
+        self.dtype = np.dtype(require_name("dtype", getattr(dtype, "__name__", str(dtype)), ("float32", "float64")))
         self.coordinates = StrokeCoordinates(self.problem.box, scaling=action_scaling)
         if not len(self.coordinates):
             raise ValueError("box fixes every parameter; allowed: at least one with lower < upper")
@@ -127,8 +138,8 @@ class HoverVectorEnv(BatchEnv):
         )
         self._insect = np.zeros(num_envs, dtype=np.intp)
         self._felt = np.zeros((num_envs, 3), dtype=np.float32)  # last Λ - 1, last log P*/P*_felt, fraction left
-        self._stroke: dict[str, np.ndarray] | None = None
-        self._beaten = np.zeros(num_envs, dtype=np.intp)  # the insect of each row's last wingbeat
+        self._stroke = {name: np.zeros(num_envs, dtype=self.dtype) for name in STROKE_PARAMETERS}
+        self._beaten = np.full(num_envs, NOT_YET, dtype=np.intp)  # the insect of each row's last wingbeat
 
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
         drawn = self.np_random.integers(len(self.insects), size=self.num_envs)
@@ -141,6 +152,8 @@ class HoverVectorEnv(BatchEnv):
 
     def _chosen(self, chosen: Any) -> np.ndarray:
         """Row numbers of insects asked for by name, one for all rows or one for each."""
+        if not isinstance(chosen, str | list | tuple | np.ndarray):
+            raise TypeError(f"reset option insect = {chosen!r} is not allowed; allowed: a name, or one for each row")
         names = [chosen] * self.num_envs if isinstance(chosen, str) else list(chosen)
         if len(names) != self.num_envs:
             raise ValueError(f"reset option insect has {len(names)} names; allowed: one, or one for each row")
@@ -159,7 +172,9 @@ class HoverVectorEnv(BatchEnv):
             axis=-1,
         )
         self._felt[mask] = felt[mask]
-        self._stroke, self._beaten = strokes, self._insect
+        for name, value in strokes.items():
+            self._stroke[name] = np.where(mask, value, self._stroke[name])
+        self._beaten = np.where(mask, self._insect, self._beaten)
         return score.reward, mask.copy(), np.zeros(self.num_envs, dtype=bool), self._info(score, strokes, clipped)
 
     def _info(self, score: Score, strokes: dict[str, np.ndarray], clipped: np.ndarray) -> Info:
@@ -191,8 +206,12 @@ class HoverVectorEnv(BatchEnv):
         return tuple(wingbeat_image(*self._last_beat(row), self.problem.model) for row in range(self.num_envs))
 
     def _last_beat(self, row: int) -> tuple[Insect, Stroke]:
-        """Insect and stroke of a row's last wingbeat; the insect's own stroke before the first."""
-        if self._stroke is None:
+        """Insect and stroke of a row's last wingbeat; the insect's own stroke before an episode's first.
+
+        With SAME_STEP autoreset the next episode has begun already when the last beat is to be seen.
+        """
+        just_begun = self._felt[row, 2] == 1 and self.autoreset_mode is not AutoresetMode.SAME_STEP
+        if just_begun or self._beaten[row] == NOT_YET:
             insect = self.insects[self._insect[row]]
             return insect, insect.stroke
         values = {name: float(value[row]) for name, value in self._stroke.items()}
@@ -275,13 +294,13 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, Info]:
         """Begin an episode; `options={"insect": name}` chooses the insect."""
-        super().reset(seed=seed)
+        super().reset(seed=require_seed(seed))
         self.batch.np_random = self.np_random
         observation, info = self.batch.reset(options=options)
         return observation[0], _first_row(info)
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
-        """One wingbeat, which ends the episode.
+        """One wingbeat, which ends the episode; `info["optimality_gap"]` is None where the insect cannot hover at all.
 
         Args:
             action: shape (n,), finite.
@@ -291,10 +310,7 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
             ValueError: for an action of another shape, or with NaN or inf.
             gymnasium.error.ResetNeeded: before a reset.
         """
-        shape = np.shape(action)
-        if shape != self.action_space.shape:
-            raise ValueError(f"action of shape {shape} is not allowed; allowed: {self.action_space.shape}")
-        observation, reward, terminated, truncated, info = self.batch.step(np.asarray(action)[None])
+        observation, reward, terminated, truncated, info = self.batch.step([action])
         return observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first_row(info)
 
     def render(self) -> np.ndarray | None:

@@ -22,7 +22,7 @@ def test_a_number_passes_exactly_where_it_is_finite_and_inside(value: float) -> 
     "value", ["3", ["3"], True, [True], None, [], 1j, [1j], np.datetime64("2020"), 10**400, [[1], [1, 2]], object()]
 )
 def test_what_is_no_real_number_is_refused(value: object) -> None:
-    with pytest.raises(TypeError, match="x = .* is not a real number or an array of them"):
+    with pytest.raises(TypeError, match=r"x = .* is not a real number or an array of them"):
         require_real("x", value)
 
 

@@ -5,13 +5,18 @@ import pytest
 from agents.presets import PPOPreset
 
 
-def test_the_learning_rate_falls_from_its_start_to_zero() -> None:
+def test_the_learning_rate_falls_from_its_start_towards_zero() -> None:
     preset = PPOPreset()
     rates = [preset.learning_rate_at(left) for left in (1.0, 0.7, 0.3, 0.0)]
     assert rates[0] == preset.learning_rate
     assert rates == sorted(rates, reverse=True)
-    assert rates[-1] == 0
-    assert preset.learning_rate_at(-0.01) == 0  # the last rollout may pass the budget
+    assert 0 < rates[-1] < 1e-6 * preset.learning_rate
+    assert preset.learning_rate_at(-0.01) == rates[-1]  # the last rollout may pass the budget
+
+
+def test_a_budget_of_one_update_learns_at_the_full_rate() -> None:
+    preset = PPOPreset(wingbeats=512, rows=512)
+    assert preset.learning_rate_at(0.0) == preset.learning_rate
 
 
 def test_the_noise_floor_falls_until_its_fraction_of_the_budget_and_stays() -> None:

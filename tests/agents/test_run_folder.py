@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from agents.run_folder import CONFIG, open_run_folder, versions, write_atomically, write_json
+from agents.run_folder import FILES, open_run_folder, versions, write_atomically, write_json
 
 
 def test_an_unnamed_run_gets_the_next_free_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -17,9 +17,13 @@ def test_a_folder_that_holds_a_run_is_refused_and_any_other_taken(tmp_path: Path
     assert open_run_folder(tmp_path / "a" / "b", "hover").is_dir()
     (tmp_path / "a" / "b" / "notes.txt").touch()
     assert open_run_folder(tmp_path / "a" / "b", "hover").is_dir()
-    (tmp_path / "a" / "b" / CONFIG).touch()
-    with pytest.raises(FileExistsError, match="holds a run already; allowed: a new or empty folder"):
-        open_run_folder(tmp_path / "a" / "b", "hover")
+    for name in FILES:
+        (tmp_path / name).touch()
+        with pytest.raises(FileExistsError, match=f"holds {name} already; allowed: a folder without a run"):
+            open_run_folder(tmp_path, "hover")
+        (tmp_path / name).unlink()
+    with pytest.raises(NotADirectoryError, match="is a file; allowed: a folder"):
+        open_run_folder(tmp_path / "a" / "b" / "notes.txt", "hover")
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ import pytest
 from stable_baselines3 import PPO
 
 from agents.presets import PPOPreset
-from agents.training import TrainingConfig, summary, train
+from agents.training import TrainingConfig, draw_pictures, make_model, summary, train
 from flapenv import INSECTS, Stroke, evaluate
 
 ROOT = Path(__file__).parents[2]
@@ -32,7 +32,9 @@ def command(*arguments: str, cwd: Path = ROOT) -> subprocess.Popen[str]:
 
 
 def test_a_run_writes_everything_needed_to_repeat_and_judge_it(tmp_path: Path) -> None:
-    result = train(TrainingConfig(preset=TINY, seed=3), tmp_path, progress=False)
+    config = TrainingConfig(preset=TINY, seed=3)
+    result = train(config, tmp_path, progress=False)
+    draw_pictures(config, result)
     names = {path.name for path in tmp_path.iterdir()}
     pictures = {"learning_curve.png", "strokes.png"}
     assert names == {"config.json", "results.json", "policy.zip", "curve.csv", "tensorboard"} | pictures
@@ -42,8 +44,8 @@ def test_a_run_writes_everything_needed_to_repeat_and_judge_it(tmp_path: Path) -
     assert config["seed"] == 3
     assert PPOPreset(**config["preset"]) == TINY
     assert {"torch", "gymnasium", "flapenv"} <= set(config["versions"])
-    again = TrainingConfig(insects=config["insects"], problem=config["problem"], preset=TINY, seed=3)
-    assert again == TrainingConfig(preset=TINY, seed=3)
+    fields = {key: config[key] for key in ("insects", "problem", "preset", "seed")}
+    assert TrainingConfig(**fields) == TrainingConfig(preset=TINY, seed=3)
 
     results = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
     assert tuple(results["insects"]) == INSECTS
@@ -107,6 +109,52 @@ def test_ctrl_c_saves_what_was_learned_and_prints_the_comparison(tmp_path: Path)
     assert (tmp_path / "run" / "policy.zip").exists()
 
 
+def test_an_interrupt_before_the_first_wingbeat_still_prints_the_comparison(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("agents.vec_env.GymnasiumVecEnv.reset", lambda _: signal.raise_signal(signal.SIGINT))
+    config = TrainingConfig(preset=TINY)
+    result = train(config, tmp_path, progress=False)
+    draw_pictures(config, result)
+    assert result.interrupted
+    assert result.wingbeats == 0
+    assert "hawkmoth" in summary(result)
+    assert (tmp_path / "results.json").exists()
+
+
+def test_ctrl_c_while_everything_is_being_loaded_is_one_line(tmp_path: Path) -> None:
+    for delay in (0.3, 0.8):
+        process = command("--out", str(tmp_path / str(delay)), "--quiet")
+        time.sleep(delay)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+        assert process.returncode in (130, -signal.SIGINT)  # the latter before Python runs a line of ours
+        assert "Traceback" not in err or process.returncode != 130
+
+
+def test_a_budget_of_one_update_learns_something_and_writes_one_point(tmp_path: Path) -> None:
+    config = TrainingConfig(preset=PPOPreset(wingbeats=512, rows=512, minibatch=128, epochs=1))
+    weights = make_model(config).policy.state_dict()
+    train(config, tmp_path, progress=False)
+    trained = PPO.load(tmp_path / "policy.zip", device="cpu").policy.state_dict()
+    assert any((weights[name] != trained[name]).any() for name in weights)
+    assert len((tmp_path / "curve.csv").read_text(encoding="utf-8").splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    ("fields", "kind", "said"),
+    [
+        ({"preset": 3}, TypeError, "preset = 3"),
+        ({"insects": "hawkmoth"}, TypeError, "insects = 'hawkmoth'"),
+        ({"insect": "hawkmoth"}, TypeError, "did you mean 'insects'"),
+        ({"preset": {"rows": 0}}, ValueError, "rows = 0"),
+    ],
+)
+def test_bad_configurations_are_named(fields: dict[str, object], kind: type[Exception], said: str) -> None:
+    with pytest.raises(kind, match=said):
+        TrainingConfig(**fields)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -114,6 +162,7 @@ def test_ctrl_c_saves_what_was_learned_and_prints_the_comparison(tmp_path: Path)
         (("--problem", "free"), "problem = 'free' is unknown"),
         (("--wingbeats", "0"), "wingbeats = 0"),
         (("--seed", "-1"), "seed = -1"),
+        (("--seed", str(2**32)), "seed = 4294967296 "),
         (("--insects", "hawkmoth", "hawkmoth"), "2 called 'hawkmoth'"),
     ],
 )

@@ -120,6 +120,10 @@ def test_the_insect_can_be_chosen_at_reset() -> None:
     assert batch.reset(options={"insect": list(INSECTS)})[1]["insect"].tolist() == list(INSECTS)
     with pytest.raises(ValueError, match="reset option insect = 'moth' is unknown"):
         env.reset(options={"insect": "moth"})
+    with pytest.raises(TypeError, match="reset option insect = 3 is not allowed"):
+        env.reset(options={"insect": 3})
+    with pytest.raises(TypeError, match="options = 5"):
+        HoverEnv().reset(options=5)
     with pytest.raises(ValueError, match="reset option insect has 2 names"):
         batch.reset(options={"insect": ["hawkmoth", "fruitfly"]})
 
@@ -158,7 +162,7 @@ def test_problems_come_as_name_record_or_dict_and_fixed_parameters_lose_their_ro
 def test_double_precision_agrees_with_single() -> None:
     actions = np.random.default_rng(0).uniform(-1, 1, (500, 6)).astype(np.float32)
     rewards = []
-    for dtype in ("float32", "float64"):
+    for dtype in ("float32", np.float64):
         env = HoverVectorEnv(500, dtype=dtype)
         env.reset(seed=1)
         rewards.append(env.step(actions)[1])
@@ -200,7 +204,8 @@ def test_an_infeasible_insect_is_kept_alone_and_left_out_of_all_with_a_warning()
         ({"problem": {"boxes": 1}}, TypeError, "did you mean 'box'"),
         ({"dtype": "float16"}, ValueError, "dtype = 'float16' is unknown; allowed: float32, float64"),
         ({"action_scaling": "log2"}, ValueError, "action_scaling = 'log2'"),
-        ({"insects": "all"}, TypeError, "insects"),
+        ({"insects": "all"}, TypeError, "insects = 'all' is not an argument.*did you mean 'insect'"),
+        ({"include_infeasible": "yes"}, TypeError, "include_infeasible = 'yes'"),
         ({"num_envs": 2}, TypeError, "num_envs = 2 is not allowed here"),
         (
             {
@@ -224,5 +229,33 @@ def test_bad_arguments_are_named(arguments: dict[str, Any], kind: type[Exception
 def test_an_action_of_wrong_shape_is_refused_by_the_scalar_environment() -> None:
     env = HoverEnv()
     env.reset(seed=0)
-    with pytest.raises(ValueError, match=r"action of shape \(5,\) is not allowed; allowed: \(6,\)"):
+    with pytest.raises(ValueError, match=r"actions of shape \(1, 5\) are not allowed; allowed: \(1, 6\)"):
         env.step(np.zeros(5))
+
+
+def test_every_corner_of_the_box_and_the_optimum_can_be_drawn() -> None:
+    env = HoverEnv(insect="hawkmoth", render_mode="rgb_array")
+    for corner in (-1, 1):
+        env.reset()
+        env.step(np.full(6, corner, dtype=np.float32))
+        assert env.render().shape[2] == 3
+
+
+def test_a_picture_shows_the_last_beat_and_after_a_reset_the_new_insects_own_stroke() -> None:
+    env = HoverEnv(insect=["hawkmoth", "fruitfly"])
+    env.reset(options={"insect": "hawkmoth"})
+    env.step(np.ones(6, dtype=np.float32))
+    insect, stroke = env.batch._last_beat(0)
+    assert insect.name == "hawkmoth"
+    assert stroke.flap_amplitude == pytest.approx(math.pi / 2)
+    env.reset(options={"insect": "fruitfly"})
+    assert env.batch._last_beat(0) == (load_insect("fruitfly"), load_insect("fruitfly").stroke)
+
+
+@pytest.mark.parametrize("seed", [3, np.int64(3)])
+def test_whole_numbers_of_any_kind_are_seeds_and_nothing_else_is(seed: Any) -> None:
+    for env in (HoverEnv(), HoverVectorEnv(1)):
+        first = env.reset(seed=seed)[0]
+        np.testing.assert_array_equal(first, env.reset(seed=3)[0])
+        with pytest.raises(TypeError, match="seed = True"):
+            env.reset(seed=True)
