@@ -7,8 +7,6 @@ from flapenv import Insect, evaluate, optimum
 from flapenv.drawing import draw_wingbeat, stroke_text, wingbeat_history, wingbeat_image
 from flapenv.performance import HoverModel
 
-pytest.importorskip("matplotlib")
-
 
 def test_the_sheet_shows_sections_angles_lift_and_power_with_their_means(insect: Insect) -> None:
     figure = draw_wingbeat(insect, insect.stroke)

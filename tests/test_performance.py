@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import torch
 from conftest import strokes
 from hypothesis import given
 
@@ -106,7 +107,6 @@ def test_batches_of_strokes_and_insects_equal_single_evaluations() -> None:
 
 
 def test_tensors_go_through_and_keep_their_gradient() -> None:
-    torch = pytest.importorskip("torch")
     frequency = torch.tensor([20.0, 30.0], dtype=torch.float64, requires_grad=True)
     result = evaluate(HAWKMOTH, dataclasses.replace(HAWKMOTH.stroke, frequency=frequency))
     arrays = evaluate(HAWKMOTH, dataclasses.replace(HAWKMOTH.stroke, frequency=np.array([20.0, 30.0])))
@@ -121,7 +121,6 @@ def test_every_field_has_the_broadcast_shape() -> None:
 
 
 def test_tensors_and_arrays_mix() -> None:
-    torch = pytest.importorskip("torch")
     mixed = dataclasses.replace(
         HAWKMOTH.stroke, frequency=torch.tensor([20.0, 30.0]).double(), flap_amplitude=np.array([1.0, 1.2])
     )

@@ -1,7 +1,7 @@
 """The one place that knows NumPy from torch."""
 
 import numpy as np
-import pytest
+import torch
 
 from flapenv.aero.arrays import as_arrays, as_like, as_numpy, as_result
 
@@ -15,7 +15,6 @@ def test_python_scalars_adapt_to_the_arrays_beside_them() -> None:
 
 
 def test_one_tensor_makes_the_rest_tensors_of_its_type() -> None:
-    torch = pytest.importorskip("torch")
     xp, a, b, c = as_arrays(np.ones(2), torch.zeros(2, dtype=torch.float32), 3)
     assert xp is torch
     assert {value.dtype for value in (a, b, c)} == {torch.float32}

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+import torch
 from conftest import strokes
 from hypothesis import given
 
@@ -158,7 +159,6 @@ def test_sharper_waveforms_and_more_digits_ask_for_more_nodes() -> None:
 
 
 def test_averages_of_tensors_equal_those_of_arrays() -> None:
-    torch = pytest.importorskip("torch")
     values = [np.array([0.3, 0.99]), np.array([1.0, 1.1]), np.array([2.0, 10.0]), np.array([1.4, 1.7])]
     tensors = [torch.tensor(value, requires_grad=True) for value in values]
     ours, theirs = speed_averages(*values, nodes=40), speed_averages(*tensors, nodes=40)
