@@ -21,6 +21,8 @@ SAMPLES, CANDIDATES, STARTS = 512, 64, 5
 """Strokes drawn over the box, the best of them, and those of the best, far apart, that the search starts at."""
 STEP = 1e-4
 """Of the central differences, in units of the cube; the averages are good to 1e-10."""
+ORACLE_STEPS = (40_000, 1_000_000)
+"""Instants a cycle of the oracle that confirms an optimum; the second where waveforms are too sharp for the first."""
 ORACLE_TOLERANCE = 1e-5
 """Relative difference up to which the refined oracle confirms an optimum."""
 WEIGHT_TOLERANCE = 1e-7
@@ -136,11 +138,7 @@ def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
         point = search.settle(search.minimise("power", starts))
     weight_support, specific_power = (float(value) for value in search.evaluate(point))
     stroke = search.stroke(point)
-    checked = evaluate_by_blade_element(
-        insect, stroke, strips=8, steps=40_000, spacing="gauss-jacobi", **vars(problem.model)
-    )
-    if not np.allclose(checked, (weight_support, specific_power), rtol=ORACLE_TOLERANCE, atol=0):
-        raise ArithmeticError(f"{insect.name}: the oracle finds {checked}, the search {weight_support, specific_power}")
+    checked = _confirmed(insect, stroke, problem, (weight_support, specific_power))
     return Optimum(
         insect=insect.name,
         feasible=feasible,
@@ -155,6 +153,20 @@ def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
         oracle_specific_power=checked[1],
         wingbeats=search.wingbeats,
     )
+
+
+def _confirmed(
+    insect: Insect, stroke: Stroke, problem: HoverProblem, found: tuple[float, float]
+) -> tuple[float, float]:
+    """Λ and P* of the stroke by the oracle, refined until it agrees with what the search found."""
+    checked = found
+    for steps in ORACLE_STEPS:
+        checked = evaluate_by_blade_element(
+            insect, stroke, strips=6, steps=steps, spacing="gauss-jacobi", **vars(problem.model)
+        )
+        if np.allclose(checked, found, rtol=ORACLE_TOLERANCE, atol=1e-9):  # a stroke may lift nothing at all
+            return checked
+    raise ArithmeticError(f"{insect.name}: the oracle finds {checked}, the search {found} for {stroke}")
 
 
 def _spread(points: np.ndarray) -> np.ndarray:
@@ -235,10 +247,10 @@ class _Search:
                 method="SLSQP",
                 options={"maxiter": 200, "ftol": 1e-12},
             )
-            point = np.clip(found.x, -1, 1)
-            carried = goal == "lift" or self.local(point)[0] >= 1 - WEIGHT_TOLERANCE
-            if carried and value(point) < best_value:
-                best, best_value = point, value(point)
+            for point in (start, np.clip(found.x, -1, 1)):
+                carried = goal == "lift" or self.local(point)[0] >= 1 - WEIGHT_TOLERANCE
+                if carried and value(point) < best_value:
+                    best, best_value = point, value(point)
         return best
 
     def settle(self, point: np.ndarray) -> np.ndarray:

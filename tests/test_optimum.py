@@ -177,6 +177,26 @@ def test_an_infeasible_box_is_reported_with_its_largest_lift() -> None:
     assert evaluate("ladybird", best.stroke).weight_support == pytest.approx(best.max_weight_support, rel=1e-8)
 
 
+def test_a_box_that_lifts_nothing_and_boxes_of_the_sharpest_waveforms_are_answered() -> None:
+    still = optimum("hawkmoth", HoverProblem(box={"pitch_phase": 0.0}))
+    assert not still.feasible
+    assert still.max_weight_support == pytest.approx(0, abs=1e-9)
+    for pitch_shape in (1e5, 1e9):
+        sharp = HoverProblem(box={"flap_shape": (0.01, 1.0), "pitch_shape": (0.1, pitch_shape)})
+        best = optimum("hawkmoth", sharp)
+        assert best.gap_to_bound == pytest.approx(0, abs=1e-3)
+
+
+def test_at_the_very_limit_of_lift_the_optimum_still_carries_the_weight() -> None:
+    box = {"flap_amplitude": 1.2, "pitch_phase": math.pi / 2, "pitch_amplitude": (math.radians(20), math.radians(80))}
+    largest = optimum("hawkmoth", HoverProblem(box={**box, "frequency": 26.3})).max_weight_support
+    for margin in (1 + 1e-6, 1 + 1e-3):
+        best = optimum("hawkmoth", HoverProblem(box={**box, "frequency": 26.3 * math.sqrt(margin / largest)}))
+        assert best.feasible
+        assert best.weight_support >= 1 - 1e-7
+        assert best.max_weight_support == pytest.approx(margin, abs=1e-6)
+
+
 def test_weight_that_does_not_bind_costs_nothing() -> None:
     best = optimum("ladybird", HoverProblem(box={"frequency_ratio": (8.0, 9.0)}))
     assert best.feasible
