@@ -122,8 +122,8 @@ def mean_gap(results: Sequence[InsectResult]) -> float | None:
 
 def comparison_table(results: Sequence[InsectResult]) -> str:
     """The table people read: learned against optimal, proven bound, and what the insect's own stroke needs."""
-    header = ("insect", "weight", "learned", "optimum", "bound", "gap", "own stroke:", "CFD", "model")
-    units = ("", "support", "W/kg", "W/kg", "W/kg", "%", "", "W/kg", "W/kg")
+    header = ("insect", "weight", "learned", "optimum", "bound", "gap", "own stroke:", "CFD", "model", "weight")
+    units = ("", "support", "W/kg", "W/kg", "W/kg", "%", "", "W/kg", "W/kg", "support")
     rows = [header, units]
     for result in results:
         best, cfd = result.best, result.insect.cfd
@@ -138,6 +138,7 @@ def comparison_table(results: Sequence[InsectResult]) -> str:
                 "",
                 "none" if cfd is None or cfd.specific_power is None else f"{cfd.specific_power:.0f}",
                 f"{result.own_specific_power:.1f}",
+                f"{result.own_weight_support:.3f}",
             )
         )
     lines = [text_table(rows, header_rows=2)]

@@ -53,8 +53,9 @@ class HoverObjective:
     """The exact-penalty objective -P*/P*_ref - λ max(0, 1-Λ) for a set of insects in one problem.
 
     P*_ref is each insect's proven lower bound; λ exceeds the multiplier of its constrained optimum, which makes the
-    maximum of the reward the constrained optimum itself (an exact penalty; a quadratic one would settle short of the
-    weight). Optima are solved when the objective is made, once per process; scoring solves nothing.
+    constrained optimum a maximum of the reward (an exact penalty; a quadratic one would settle short of the weight),
+    and in the default problem the only one (docs/optimum.md). Optima are solved when the objective is made, once per
+    process; scoring solves nothing.
     """
 
     def __init__(self, insects: Sequence[Insect], problem: HoverProblem, dtype: Any = np.float64) -> None:

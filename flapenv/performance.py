@@ -200,7 +200,7 @@ def evaluate(
     Args:
         insect: the insect or the name of one of `INSECTS`; array fields broadcast against the stroke's.
         stroke: the stroke; the insect's own where None, which is the line of Table 3.
-        tolerance: relative error of the time quadrature.
+        tolerance: relative error of the time quadrature; see `time_nodes` for what it means near θmax = 90°.
         **model: options of `HoverModel`.
 
     Returns:

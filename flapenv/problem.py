@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Any, Literal
 
 import numpy as np
@@ -151,7 +151,9 @@ class HoverProblem:
                 "1.5708 rad where k_flap is used, more only with model={'induced': False}"
             )
         if self.name is None:
+            rest = (field for field in fields(self) if field.name not in ("name", "box", "model"))
             same = self.box == StrokeBox() and self.model == HoverModel()
+            same &= all(getattr(self, field.name) == field.default for field in rest)
             object.__setattr__(self, "name", "free-frequency" if same else "custom")
 
     @property

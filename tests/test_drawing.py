@@ -14,10 +14,11 @@ def test_the_sheet_shows_sections_angles_lift_and_power_with_their_means(insect:
     assert insect.name in figure.get_suptitle()
     means = [axes.get_legend().get_texts()[0].get_text() for axes in figure.axes[2:]]
     own = evaluate(insect)
-    assert means == [
-        f"mean {own.weight_support:.3f}",
-        f"mean {own.specific_power:.2f}",
-    ]
+    assert means == [f"mean {own.weight_support:.3f}", f"mean {own.specific_power:.2f}"]
+    history = wingbeat_history(insect, insect.stroke, HoverModel())
+    weight = insect.mass * 9.81
+    for axes, expected in zip(figure.axes[2:], (history.lift / weight, history.power / insect.mass), strict=True):
+        np.testing.assert_allclose(axes.lines[0].get_ydata(), expected)
 
 
 def test_the_history_behind_the_picture_has_the_means_of_the_fast_path(hawkmoth: Insect) -> None:

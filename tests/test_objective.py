@@ -93,6 +93,26 @@ def test_the_gap_charges_missing_weight_ten_times() -> None:
     assert objective.gap(0, 1.5, best) == pytest.approx(0)
 
 
+def test_a_steep_multiplier_is_charged_double_in_units_of_each_reference() -> None:
+    pitch = (math.radians(30), math.radians(85))
+    box = {"flap_amplitude": 1.0, "pitch_amplitude": pitch, "pitch_phase": math.pi / 2}
+    largest = optimum("hawkmoth", HoverProblem(box={**box, "frequency": 26.3})).max_weight_support
+    steep = HoverProblem(box={**box, "frequency": 26.3 * math.sqrt(1.01 / largest)})  # lifts 1 % more than it must
+    best = optimum("hawkmoth", steep)
+    charge = 2 * best.multiplier / best.specific_power
+    assert charge > 10
+    objective = HoverObjective([load_insect("hawkmoth")], steep)
+    assert objective.gap(0, 0.99, best.specific_power) == pytest.approx(0.01 * charge)
+    values, _ = StrokeCoordinates(steep.box).decode(np.array([[-0.9, 0.5, 0.5]]), 26.3)
+    score = objective.score(np.zeros(1, dtype=int), values)
+    missing = score.lift_deficit[0]
+    assert missing > 0
+    power = score.specific_power[0]
+    assert score.optimality_gap[0] == pytest.approx(power / best.specific_power - 1 + charge * missing)
+    bound_charge = max(10, 2 * best.multiplier / best.lower_bound)
+    assert score.bound_gap[0] == pytest.approx(power / best.lower_bound - 1 + bound_charge * missing)
+
+
 def test_an_infeasible_insect_has_no_gap() -> None:
     objective = HoverObjective([load_insect("hawkmoth")], HoverProblem(box={"frequency_ratio": (0.1, 0.2)}))
     assert objective.gap(0, 0.5, 10.0) is None

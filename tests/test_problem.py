@@ -93,7 +93,8 @@ def test_bad_problems_are_named(fields: dict[str, object], kind: type[Exception]
 
 def test_a_problem_of_ones_own_is_not_called_by_the_presets_name() -> None:
     assert HoverProblem(box={"flap_shape": 0.5}).name == "custom"
-    assert HoverProblem(lift_penalty=np.float32(5)).name == "free-frequency"
+    assert HoverProblem(lift_penalty=np.float32(5)).name == "custom"
+    assert HoverProblem(reward_floor=-20).name == "free-frequency"
     assert HoverProblem(name="mine", box={"flap_shape": np.array(0.5)}).name == "mine"
 
 

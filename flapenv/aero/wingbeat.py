@@ -26,6 +26,9 @@ def time_nodes(flap_shape: Real, pitch_shape: Real, *, tolerance: float = 1e-9) 
     to the measured convergence and held by a test. Layers thinner than the tolerance carry less than it and are not
     resolved, nor are those thinner than `THINNEST_LAYER`; the triangle itself, Cφ = 1, has none.
 
+    As θmax → 90° the wing feathers all the way between its reversals, and what power is left comes from the layers
+    alone: there the error of the power is relative to v̄³, not to the power itself. Up to 85° (α_min of 5°) it is not.
+
     Args:
         flap_shape: Cφ, the largest of which counts [-].
         pitch_shape: Cθ, the largest of which counts [-].

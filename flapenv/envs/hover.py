@@ -108,9 +108,7 @@ class HoverVectorEnv(BatchEnv):
             TypeError: for an unknown argument or one of another kind.
             ValueError: for an unknown name or a value outside its range.
         """
-        for name, value in unknown.items():
-            known = [key for key in inspect.signature(HoverVectorEnv).parameters if key != "unknown"]
-            raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
+        _refuse(unknown, known=ARGUMENTS)
         require_flag("include_infeasible", include_infeasible)
         self.problem = as_problem(problem)
         self.insects = choose_insects(insect, self.problem, include_infeasible=include_infeasible)
@@ -218,6 +216,15 @@ class HoverVectorEnv(BatchEnv):
         return self.insects[self._beaten[row]], Stroke(**values)
 
 
+ARGUMENTS = tuple(name for name in inspect.signature(HoverVectorEnv).parameters if name != "unknown")
+
+
+def _refuse(unknown: dict[str, Any], *, known: Sequence[str]) -> None:
+    """Name an argument that does not exist, and those that do."""
+    for name, value in unknown.items():
+        raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
+
+
 class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
     """One step is one wingbeat: choose its kinematics, hover with the least aerodynamic power.
 
@@ -239,7 +246,8 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
     | 4 | pitch_amplitude | θmax | rad | 45° | 65° | linear |
     | 5 | pitch_phase | δ | rad | 60° | 120° | linear |
 
-    Finite actions outside the box are clipped and flagged in `info["clipped"]`; NaN and inf are refused.
+    Finite actions outside [-1, 1] are clipped, as is a frequency q/φmax outside its bounds; `info["clipped"]` says so
+    of both. NaN and inf are refused.
 
     ## Observation space
     `Box(-5, 5, (6,), float32)`. Nothing in it needs the optimum or names the insect.
@@ -256,7 +264,8 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
     ## Rewards
     -P*/P*_ref - λ max(0, 1 - Λ), not below -20. P*_ref is the proven lower bound, so the best return is about -1.045 in
     the default problem. λ exceeds the multiplier of the constrained optimum, so that the reward's optimum is the
-    constrained optimum itself. Terms: `info["reward/power"]`, `info["reward/lift"]`.
+    constrained optimum itself, globally so in the default problem (docs/optimum.md). Terms: `info["reward/power"]`,
+    `info["reward/lift"]`.
 
     ## Starting state
     An insect drawn uniformly, or `options={"insect": name}`.
@@ -284,9 +293,8 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
             TypeError: for an unknown argument or one of another kind.
             ValueError: for an unknown name or a value outside its range.
         """
-        for name in ("num_envs", "autoreset_mode"):
-            if name in arguments:
-                raise TypeError(f"{name} = {arguments[name]!r} is not allowed here; it is HoverVectorEnv's")
+        own = [name for name in ARGUMENTS if name not in ("num_envs", "autoreset_mode")]
+        _refuse({name: value for name, value in arguments.items() if name not in own}, known=own)
         self.batch = HoverVectorEnv(1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **arguments)
         self.render_mode = self.batch.render_mode
         self.observation_space = self.batch.single_observation_space

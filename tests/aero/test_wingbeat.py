@@ -76,6 +76,17 @@ def test_the_fast_path_meets_the_oracle_where_both_waveforms_are_sharp(
     np.testing.assert_allclose(fast_averages(stroke, tolerance=1e-6), oracle_averages(stroke, 60_000), rtol=1e-5)
 
 
+@pytest.mark.parametrize(("flap_shape", "pitch_shape"), [(0.99, 10.0), (0.9999, 100.0), (0.3, 1e5)])
+@pytest.mark.parametrize("pitch_deg", [85, 90])
+def test_a_feathering_wing_keeps_the_tolerance_down_to_5_degrees_and_in_units_of_the_speed_at_none(
+    flap_shape: float, pitch_shape: float, pitch_deg: int
+) -> None:
+    rest = (flap_shape, math.radians(pitch_deg), pitch_shape, math.radians(80))
+    ours = speed_averages(*rest, nodes=time_nodes(flap_shape, pitch_shape, tolerance=1e-6))
+    many = speed_averages(*rest, nodes=1200)
+    np.testing.assert_allclose(ours, many, **({"rtol": 1e-5} if pitch_deg < 90 else {"rtol": 0, "atol": 1e-5}))
+
+
 @given(strokes(sharpest_flap=1.0, sharpest_pitch=200))
 def test_the_default_tolerance_is_met_by_far_more_nodes(stroke: Stroke) -> None:
     many = speed_averages(stroke.flap_shape, stroke.pitch_amplitude, stroke.pitch_shape, stroke.pitch_phase, nodes=600)

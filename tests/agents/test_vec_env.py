@@ -53,6 +53,32 @@ def test_over_a_loop_of_environments_it_equals_dummy_vec_env(name: str) -> None:
             assert_same(a, b)
 
 
+class Ends(gym.Env):
+    """Ends on its first step as asked: terminated, truncated or both."""
+
+    observation_space = gym.spaces.Box(-1, 1, (1,), np.float32)
+    action_space = gym.spaces.Box(-1, 1, (1,), np.float32)
+
+    def __init__(self, terminated: bool, truncated: bool) -> None:
+        self.ends = terminated, truncated
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict]:
+        super().reset(seed=seed)
+        return np.zeros(1, dtype=np.float32), {}
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict]:
+        return np.ones(1, dtype=np.float32), 0.0, *self.ends, {}
+
+
+def test_an_episode_that_is_both_terminated_and_truncated_counts_as_terminated() -> None:
+    cases = [(True, False), (False, True), (True, True)]
+    makers = [lambda ends=ends: Ends(*ends) for ends in cases]
+    ours = GymnasiumVecEnv(SyncVectorEnv(makers, autoreset_mode=AutoresetMode.SAME_STEP))
+    ours.reset()
+    *_, infos = ours.step(np.zeros((3, 1), dtype=np.float32))
+    assert [info["TimeLimit.truncated"] for info in infos] == [False, True, False]
+
+
 def native(rows: int = ROWS) -> GymnasiumVecEnv:
     return GymnasiumVecEnv(gym.make_vec("flapenv/Hover-v0", num_envs=rows, autoreset_mode="SAME_STEP"))
 

@@ -180,6 +180,16 @@ def test_disabled_asks_for_a_reset_of_the_rows_that_ended(env_id: str) -> None:
         env.step(env.action_space.sample())
 
 
+def test_rows_that_were_not_reset_still_ask_for_it(env_id: str) -> None:
+    env = make(env_id, "DISABLED")
+    env.reset(seed=1)
+    while not env.step(env.action_space.sample())[2].all():
+        pass
+    env.reset(options={"reset_mask": np.array([True, False, True, False, False])})
+    with pytest.raises(ResetNeeded, match=r"rows \[1, 3, 4\] have ended"):
+        env.step(env.action_space.sample())
+
+
 def test_a_reset_mask_resets_its_rows_only(env_id: str) -> None:
     env = make(env_id, "DISABLED")
     env.reset(seed=1)

@@ -206,7 +206,7 @@ def test_an_infeasible_insect_is_kept_alone_and_left_out_of_all_with_a_warning()
         ({"action_scaling": "log2"}, ValueError, "action_scaling = 'log2'"),
         ({"insects": "all"}, TypeError, "insects = 'all' is not an argument.*did you mean 'insect'"),
         ({"include_infeasible": "yes"}, TypeError, "include_infeasible = 'yes'"),
-        ({"num_envs": 2}, TypeError, "num_envs = 2 is not allowed here"),
+        ({"num_envs": 2}, TypeError, "num_envs = 2 is not an argument of this environment; allowed: insect, problem"),
         (
             {
                 "problem": {

@@ -1,0 +1,16 @@
+"""The benchmark runs; what it measures is never asserted."""
+
+import pytest
+
+from benchmarks import speed
+
+
+def test_every_case_runs_and_the_table_has_both_ratios(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(speed, "SECONDS", 1e-3)
+    monkeypatch.setattr(speed, "REPETITIONS", 1)
+    speed.main()
+    out = capsys.readouterr().out
+    for word in ("baseline", "oracle", "fast path", "vector env", "gym.make", "x baseline", "x oracle"):
+        assert word in out
