@@ -75,7 +75,7 @@ def run(arguments: list[str] | None) -> int:
             seed=options.seed,
         )
         result = train(config, options.out, progress=not options.quiet)
-    except (ValueError, TypeError, OSError) as mistake:
+    except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
         print(f"train.py: {mistake}", file=sys.stderr)
         return 2
     print(summary(result), flush=True)

@@ -68,13 +68,12 @@ class InsectResult:
 class Comparison:
     """Evaluates policies on every insect of a problem, without noise and in double precision."""
 
-    def __init__(self, insects: Sequence[Insect], problem: HoverProblem, *, action_scaling: str = "tip-speed") -> None:
+    def __init__(self, insects: Sequence[Insect], problem: HoverProblem) -> None:
         """Make one row for each insect; names must differ."""
         self.env = HoverVectorEnv(
             len(insects),
             insect=list(insects),
             problem=problem,
-            action_scaling=action_scaling,  # type: ignore[arg-type]
             autoreset_mode="DISABLED",
             dtype="float64",
         )
