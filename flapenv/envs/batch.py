@@ -62,6 +62,30 @@ def require_options(options: dict[str, Any] | None, known: tuple[str, ...]) -> d
     return options
 
 
+def checked_actions(field: str, actions: Any, shape: tuple[int, ...] | None) -> np.ndarray:
+    """Actions as float32, finite and of the right shape; those beyond ±1 stay beyond it.
+
+    Raises:
+        TypeError: if they are not numbers.
+        ValueError: if they have another shape, or NaN or inf.
+    """
+    try:
+        array = np.asarray(actions)
+    except ValueError:  # rows of different lengths
+        array = np.empty(0, dtype=object)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{field} = {actions!r} are not real numbers; allowed: floats in [-1, 1]")
+    if array.shape != shape:
+        raise ValueError(f"{field} with shape {array.shape} is not allowed; allowed: {shape}")
+    if not np.isfinite(array).all():
+        row = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise ValueError(
+            f"{field}[{', '.join(map(str, row))}] = {array[row]} is not allowed; allowed: finite, in [-1, 1] "
+            "(beyond it they are clipped)"
+        )
+    return np.clip(array, -2, 2).astype(np.float32)  # beyond ±1 still shows as clipped, and no cast overflows
+
+
 class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     """A vector environment that computes all of its rows at once.
 
@@ -151,7 +175,7 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         """
         if not self._begun:
             raise error.ResetNeeded("call reset() before the first step()")
-        actions = self._checked(actions)
+        actions = checked_actions("actions", actions, self.action_space.shape)
         ended = self._ended.copy()
         if self.autoreset_mode is AutoresetMode.DISABLED and ended.any():
             raise error.ResetNeeded(
@@ -196,24 +220,6 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
                 f"({self.num_envs},) with at least one True"
             )
         return mask.copy()
-
-    def _checked(self, actions: Any) -> np.ndarray:
-        """Actions as a float32 array of the right shape, finite."""
-        try:
-            array = np.asarray(actions)
-        except ValueError:  # rows of different lengths
-            array = np.empty(0, dtype=object)
-        if array.dtype.kind not in "fiu":
-            raise TypeError(f"actions = {actions!r} are not real numbers; allowed: floats in [-1, 1]")
-        if array.shape != self.action_space.shape:
-            raise ValueError(f"actions of shape {array.shape} are not allowed; allowed: {self.action_space.shape}")
-        if not np.isfinite(array).all():
-            row = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-            raise ValueError(
-                f"actions[{', '.join(map(str, row))}] = {array[row]} is not allowed; allowed: finite, in [-1, 1] "
-                "(beyond it they are clipped)"
-            )
-        return np.clip(array, -2, 2).astype(np.float32)  # beyond ±1 still shows as clipped, and no cast overflows
 
 
 def _masked(info: Info, mask: np.ndarray) -> Info:

@@ -14,7 +14,7 @@ from flapenv.aero.checks import allowed, require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
-from flapenv.envs.batch import BatchEnv, Info, require_seed
+from flapenv.envs.batch import BatchEnv, Info, checked_actions, require_seed
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.objective import HoverObjective, Score
 from flapenv.optimum import optimum
@@ -318,7 +318,9 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
             ValueError: for an action of another shape, or with NaN or inf.
             gymnasium.error.ResetNeeded: before a reset.
         """
-        observation, reward, terminated, truncated, info = self.batch.step([action])
+        observation, reward, terminated, truncated, info = self.batch.step(
+            checked_actions("action", action, self.action_space.shape)[None]
+        )
         return observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first_row(info)
 
     def render(self) -> np.ndarray | None:

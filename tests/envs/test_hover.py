@@ -229,8 +229,12 @@ def test_bad_arguments_are_named(arguments: dict[str, Any], kind: type[Exception
 def test_an_action_of_wrong_shape_is_refused_by_the_scalar_environment() -> None:
     env = HoverEnv()
     env.reset(seed=0)
-    with pytest.raises(ValueError, match=r"actions of shape \(1, 5\) are not allowed; allowed: \(1, 6\)"):
+    with pytest.raises(ValueError, match=r"action with shape \(5,\) is not allowed; allowed: \(6,\)"):
         env.step(np.zeros(5))
+    with pytest.raises(ValueError, match=r"action\[2\] = nan is not allowed"):
+        env.step(np.array([0, 0, np.nan, 0, 0, 0]))
+    with pytest.raises(TypeError, match="action = None"):
+        env.step(None)
 
 
 def test_every_corner_of_the_box_and_the_optimum_can_be_drawn() -> None:
