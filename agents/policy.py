@@ -1,5 +1,6 @@
 """A Gaussian policy whose mean stays near the box and whose noise is its own for every wing."""
 
+from collections.abc import Callable
 from typing import Any
 
 import torch
@@ -49,7 +50,8 @@ class HoverPolicy(ActorCriticPolicy):
         nn.init.constant_(self.noise_net.bias, self.log_std_init)
         self.action_net = nn.Sequential(self.action_net, _Reach())
         trained = [parameter for parameter in self.parameters() if parameter.requires_grad]
-        self.optimizer = self.optimizer_class(trained, lr=lr_schedule(1), **self.optimizer_kwargs)  # type: ignore[call-arg]
+        make_optimizer: Callable[..., torch.optim.Optimizer] = self.optimizer_class
+        self.optimizer = make_optimizer(trained, lr=lr_schedule(1), **self.optimizer_kwargs)
 
     def _get_action_dist_from_latent(self, latent_pi: torch.Tensor) -> Distribution:
         assert isinstance(self.action_dist, DiagGaussianDistribution)

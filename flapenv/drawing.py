@@ -1,5 +1,6 @@
 """Pictures of wingbeats. matplotlib is imported inside, so that only those who draw need it (extra "report")."""
 
+import importlib.util
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -29,10 +30,8 @@ def require_matplotlib() -> None:
     Raises:
         ImportError: naming the extra to install.
     """
-    try:
-        import matplotlib  # noqa: F401
-    except ImportError as missing:
-        raise ImportError("pictures need matplotlib: pip install 'flapenv[report]'") from missing
+    if importlib.util.find_spec("matplotlib") is None:
+        raise ImportError("pictures need matplotlib: pip install 'flapenv[report]'")
 
 
 def stroke_text(stroke: Stroke) -> str:

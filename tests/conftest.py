@@ -36,6 +36,17 @@ def wings() -> st.SearchStrategy[Wing]:
     )
 
 
+def yardstick_stroke(frequency: float) -> Stroke:
+    """The stroke of Λ_ref and P*_felt: φmax = 60°, constant speed and constant α = 35°."""
+    return Stroke(
+        frequency=frequency,
+        flap_amplitude=math.radians(60),
+        pitch_amplitude=math.radians(55),
+        flap_shape=1.0,
+        pitch_shape=1e9,
+    )
+
+
 @pytest.fixture(params=INSECTS)
 def insect(request: pytest.FixtureRequest) -> Insect:
     """Each of the eight insects in turn."""

@@ -39,3 +39,9 @@ def test_the_image_is_an_array_of_colours_and_differs_between_strokes(hawkmoth: 
 def test_strokes_are_written_in_degrees(hawkmoth: Insect) -> None:
     text = stroke_text(hawkmoth.stroke)
     assert text == "f = 26.3 Hz   φmax = 60.5°   Cφ = 0   Cθ = 5   θmax = 58.0°   δ = 90.0°"
+
+
+def test_without_matplotlib_the_extra_to_install_is_named(hawkmoth: Insect, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
+    with pytest.raises(ImportError, match=r"pip install 'flapenv\[report\]'"):
+        draw_wingbeat(hawkmoth, hawkmoth.stroke)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 import torch
-from conftest import strokes
+from conftest import strokes, yardstick_stroke
 from hypothesis import given
 
 from flapenv import HoverModel, Insect, Stroke, Wing, evaluate, load_insect
@@ -145,13 +145,7 @@ def test_a_scalar_evaluation_returns_python_floats() -> None:
 
 def test_the_yardstick_is_the_triangle_with_constant_angle() -> None:
     cases = stack_cases([hover_case(HAWKMOTH, HoverModel())])
-    stroke = Stroke(
-        frequency=26.3,
-        flap_amplitude=math.radians(60),
-        pitch_amplitude=math.radians(55),
-        flap_shape=1.0,
-        pitch_shape=1e9,
-    )
+    stroke = yardstick_stroke(26.3)
     weight_support, power = yardstick(cases, HoverModel())
     ours = evaluate(HAWKMOTH, stroke)
     assert ours.weight_support == pytest.approx(weight_support[0], rel=1e-5)

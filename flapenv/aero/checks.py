@@ -4,7 +4,7 @@ import difflib
 import functools
 from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, fields, is_dataclass
-from typing import Any, TypeVar, dataclass_transform
+from typing import Any, TypeVar, cast, dataclass_transform
 
 import numpy as np
 
@@ -20,14 +20,11 @@ def record(cls: type[T]) -> type[T]:
     Raises:
         TypeError: on construction, for an unknown or a missing field.
     """
-    made = dataclass(frozen=True, kw_only=True)(cls)
+    made: Any = dataclass(frozen=True, kw_only=True)(cls)
     generated = made.__init__
-    known = [f.name for f in fields(made) if f.init]  # type: ignore[arg-type]
-    needed = [
-        f.name
-        for f in fields(made)  # type: ignore[arg-type]
-        if f.init and f.default is MISSING and f.default_factory is MISSING
-    ]
+    arguments = [f for f in fields(made) if f.init]
+    known = [f.name for f in arguments]
+    needed = [f.name for f in arguments if f.default is MISSING and f.default_factory is MISSING]
 
     @functools.wraps(generated)
     def checked_init(self: Any, **values: Any) -> None:
@@ -39,8 +36,8 @@ def record(cls: type[T]) -> type[T]:
             raise TypeError(f"{made.__name__} needs {', '.join(missing)}; its fields are {', '.join(known)}")
         generated(self, **values)
 
-    made.__init__ = checked_init  # type: ignore[method-assign]
-    return made
+    made.__init__ = checked_init
+    return cast(type[T], made)
 
 
 def allowed(name: object, names: Iterable[str]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import pytest
+from conftest import yardstick_stroke
 from gymnasium.envs.registration import EnvSpec
 
 from flapenv import INSECTS, HoverProblem, Insect, Stroke, Wing, evaluate, load_insect, optimum
@@ -89,13 +90,7 @@ def test_observations_are_the_wings_shape_and_what_was_felt() -> None:
     env = HoverEnv(insect="cranefly", dtype="float64")
     first, _ = env.reset()
     wing = load_insect("cranefly").wing
-    yardstick = Stroke(
-        frequency=45.5,
-        flap_amplitude=math.radians(60),
-        pitch_amplitude=math.radians(55),
-        flap_shape=1.0,
-        pitch_shape=1e9,
-    )
+    yardstick = yardstick_stroke(45.5)
     reference = evaluate("cranefly", yardstick)
     expected = (wing.aspect_ratio - 4, (wing.r1_hat - 0.51) / 0.04, math.log(reference.weight_support), 0, 0, 1)
     np.testing.assert_allclose(first, expected, rtol=1e-4)
