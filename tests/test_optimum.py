@@ -8,6 +8,7 @@ import pytest
 from conftest import strokes
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.optimize import OptimizeResult
 
 from flapenv import HoverModel, HoverProblem, Insect, Stroke, evaluate, load_insect, optimum
 from flapenv.aero.blade_element import blade_element
@@ -195,6 +196,16 @@ def test_at_the_very_limit_of_lift_the_optimum_still_carries_the_weight() -> Non
         assert best.feasible
         assert best.weight_support >= 1 - 1e-7
         assert best.max_weight_support == pytest.approx(margin, abs=1e-6)
+
+
+def test_a_search_that_ends_nowhere_still_answers_with_a_stroke_that_carries(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nowhere(function: object, start: np.ndarray, **_: object) -> OptimizeResult:
+        return OptimizeResult(x=-np.ones_like(start))  # the slowest stroke of the box, far under weight
+
+    monkeypatch.setattr("scipy.optimize.minimize", nowhere)
+    best = optimum("hawkmoth", HoverProblem(name="nowhere"))
+    assert best.feasible
+    assert best.weight_support >= 1 - 1e-7
 
 
 def test_weight_that_does_not_bind_costs_nothing() -> None:

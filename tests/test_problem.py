@@ -9,6 +9,7 @@ import pytest
 
 from flapenv import HoverProblem, StrokeBox
 from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.wingbeat import speed_averages
 from flapenv.problem import as_problem
 
 
@@ -28,6 +29,16 @@ def test_the_default_is_problem_a_with_the_box_of_the_documentation() -> None:
 def test_frequency_bounds_are_relative_unless_given_in_hertz() -> None:
     assert StrokeBox().bounds("frequency", 20.0) == (10, 30)
     assert StrokeBox(frequency=(15, 25)).bounds("frequency", 20.0) == (15, 25)
+
+
+def test_a_box_that_reaches_the_triangle_gets_nodes_for_its_sharpest_neighbours() -> None:
+    rest = {"pitch_shape": (0.1, 1.0)}
+    opened, shut, triangle = (StrokeBox(flap_shape=bounds, **rest) for bounds in ((0.0, 1.0), (0.0, 0.9999), 1.0))
+    nodes = opened.time_nodes(tolerance=1e-6)
+    assert nodes > shut.time_nodes(tolerance=1e-6) > triangle.time_nodes(tolerance=1e-6)
+    shapes = 1 - 10.0 ** -np.arange(2, 15)
+    waveform = (shapes, 1.1, 0.5, 1.3)
+    np.testing.assert_allclose(speed_averages(*waveform, nodes=nodes), speed_averages(*waveform, nodes=1500), rtol=1e-5)
 
 
 def test_one_number_fixes_a_parameter() -> None:
