@@ -132,7 +132,7 @@ def comparison_table(results: Sequence[InsectResult]) -> str:
                 f"{result.weight_support:.4f}",
                 f"{result.specific_power:.2f}",
                 f"{best.specific_power:.2f}" if best.feasible else "none",
-                f"{best.lower_bound:.2f}",
+                "none" if best.lower_bound is None else f"{best.lower_bound:.2f}",
                 "none" if result.gap is None else f"{100 * result.gap:.2f}",
                 "",
                 "none" if cfd is None or cfd.specific_power is None else f"{cfd.specific_power:.0f}",

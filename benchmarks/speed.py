@@ -14,8 +14,10 @@ import gymnasium as gym
 import numpy as np
 
 from flapenv import HoverProblem, Stroke, evaluate, load_insect
+from flapenv.case import hover_case
 from flapenv.coordinates import StrokeCoordinates
-from flapenv.performance import evaluate_by_blade_element, hover_averages, hover_case
+from flapenv.performance import hover_averages
+from flapenv.simulation import evaluate_by_blade_element
 from flapenv.tables import text_table
 
 SECONDS, REPETITIONS = 0.7, 3

@@ -4,25 +4,35 @@ Start with `gymnasium.make("flapenv/Hover-v0")`, `flapenv.evaluate("hawkmoth")` 
 """
 
 from flapenv._version import __version__
+from flapenv.aero.motions import FourierMotion, SampledMotion
+from flapenv.aero.planform import FunctionPlanform, TabulatedPlanform
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.envs.registration import register_envs
-from flapenv.insects import INSECTS, HoverReference, Insect, WingFactors, load_insect
+from flapenv.insects import INSECTS, ForceConstants, HoverReference, Insect, WingFactors, load_insect
+from flapenv.model import COEFFICIENTS, HoverModel
 from flapenv.optimum import Optimum, optimum
-from flapenv.performance import HoverModel, HoverPerformance, evaluate
+from flapenv.performance import HoverPerformance, evaluate
 from flapenv.problem import PROBLEMS, HoverProblem, StrokeBox
+from flapenv.simulation import simulate
 
 __all__ = [
+    "COEFFICIENTS",
     "INSECTS",
     "PROBLEMS",
+    "ForceConstants",
+    "FourierMotion",
+    "FunctionPlanform",
     "HoverModel",
     "HoverPerformance",
     "HoverProblem",
     "HoverReference",
     "Insect",
     "Optimum",
+    "SampledMotion",
     "Stroke",
     "StrokeBox",
+    "TabulatedPlanform",
     "Wing",
     "WingFactors",
     "__version__",
@@ -30,6 +40,7 @@ __all__ = [
     "load_insect",
     "optimum",
     "register_envs",
+    "simulate",
 ]
 
 register_envs()

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flapenv.aero.blade_element import BladeElementHistory, blade_element
+from flapenv.aero.history import WingbeatHistory
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.insects import Insect
-from flapenv.performance import HoverModel, evaluate
+from flapenv.model import HoverModel
+from flapenv.performance import evaluate
+from flapenv.simulation import simulate
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,8 +22,6 @@ BLUE, ORANGE, GREEN, RED, GREY = "#0072B2", "#E69F00", "#009E73", "#D55E00", "#6
 """Okabe and Ito's colours, told apart without colour vision."""
 CHORDS = 11
 """Wing sections drawn a half-stroke."""
-PITCHING_AXIS = 0.25
-"""Distance of the pitching axis from the leading edge [chords] (Part II, section 2.3.3)."""
 
 
 def require_matplotlib() -> None:
@@ -45,20 +45,6 @@ def stroke_text(stroke: Stroke) -> str:
     return "   ".join(words)
 
 
-def wingbeat_history(insect: Insect, stroke: Stroke, model: HoverModel, *, steps: int = 720) -> BladeElementHistory:
-    """Angles, lift and power over one wingbeat, by the blade-element oracle with exact span integration."""
-    constant = evaluate(insect, stroke, **vars(model)).lift_constant
-    return blade_element(
-        insect.wing,
-        stroke,
-        constant,
-        air_density=model.air_density,
-        strips=4,
-        steps=steps,
-        spacing="gauss-jacobi",
-    )
-
-
 def draw_wingbeat(insect: Insect, stroke: Stroke, model: HoverModel | None = None) -> "Figure":
     """A wingbeat on one sheet: wing sections along both half-strokes, angles, lift and power over the cycle.
 
@@ -78,7 +64,7 @@ def draw_wingbeat(insect: Insect, stroke: Stroke, model: HoverModel | None = Non
 
     model = model or HoverModel()
     performance = evaluate(insect, stroke, **vars(model))
-    history = wingbeat_history(insect, stroke, model)
+    history = simulate(insect, stroke, model=model, strips=4, steps=720, spacing="gauss")
     figure = Figure(figsize=(9.6, 6.4), dpi=100, layout="constrained")
     grid = figure.add_gridspec(2, 3, height_ratios=(1.15, 1))
     figure.suptitle(
@@ -105,7 +91,7 @@ def draw_wingbeat(insect: Insect, stroke: Stroke, model: HoverModel | None = Non
 
 
 def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Stroke) -> None:
-    """Wing sections at equal times along both half-strokes, to scale at r̂₂ R, turned about the quarter chord."""
+    """Wing sections at equal times along both half-strokes, to scale at r̂₂ R, turned about its pitching axis."""
     radius = math.sqrt(insect.wing.moment(2)) * insect.wing.aspect_ratio  # in mean chords
     for start, level, colour, label in (
         (-math.pi / 2, 0.9, BLUE, "forward half-stroke →"),
@@ -115,7 +101,7 @@ def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Stroke) -> None:
         place = stroke.flap_angle(phase) * radius
         theta = stroke.pitch_angle(phase)
         chord = np.stack([np.sin(theta), np.cos(theta)])  # trailing to leading edge
-        front = np.stack([place, np.full(CHORDS, level)]) + PITCHING_AXIS * chord
+        front = np.stack([place, np.full(CHORDS, level)]) + insect.wing.pitch_axis * chord
         axes.plot(*np.stack([front - chord, front], axis=1), color=colour, lw=2)
         axes.plot(*front, "o", color=colour, ms=5)
         axes.axhline(level, color=GREY, lw=0.5, ls=":", zorder=0)
@@ -130,11 +116,11 @@ def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Stroke) -> None:
     axes.set_aspect("equal")
 
 
-def _draw_angles(axes: "Axes", time: np.ndarray, history: BladeElementHistory) -> None:
+def _draw_angles(axes: "Axes", time: np.ndarray, history: WingbeatHistory) -> None:
     """φ, θ and α over the cycle."""
     for angle, colour, dash, label in (
-        (history.flap_angle, BLUE, "-", "φ flap"),
-        (history.pitch_angle, ORANGE, "--", "θ pitch"),
+        (history.kinematics.flap, BLUE, "-", "φ flap"),
+        (history.kinematics.pitch, ORANGE, "--", "θ pitch"),
         (history.angle_of_attack, GREEN, "-.", "α attack"),
     ):
         axes.plot(time, np.degrees(angle), dash, color=colour, label=label)

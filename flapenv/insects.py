@@ -57,6 +57,28 @@ class WingFactors:
 
 
 @record
+class ForceConstants:
+    """Constants of C_L = C_T sin 2α, C_D = C_D0 cos² α + C_D90 sin² α, measured or fitted for one wing.
+
+    Attributes:
+        lift_constant: C_T [-], > 0.
+        zero_drag: C_D0 [-], >= 0.
+        normal_drag: C_D90 [-], >= 0.
+    """
+
+    lift_constant: Real
+    zero_drag: Real
+    normal_drag: Real
+
+    def __post_init__(self) -> None:
+        """Check all."""
+        lift = require_real("lift_constant", self.lift_constant, 0.0, open_low=True)
+        object.__setattr__(self, "lift_constant", lift)
+        for name in ("zero_drag", "normal_drag"):
+            object.__setattr__(self, name, require_real(name, getattr(self, name), 0.0))
+
+
+@record
 class Insect:
     """A hovering animal or vehicle: what it weighs, its wing, and the stroke it is known to beat.
 
@@ -66,6 +88,7 @@ class Insect:
         wing: one wing of the pair.
         stroke: its own stroke, which sets the reference frequency of boxes and the stroke k_tip is computed at.
         k_table: tabulated k_ind and k_tip; computed from the wing where None.
+        force_constants: for the coefficients "berman-wang", where there are any; Berman & Wang's for three insects.
         cfd: what CFD found at its own stroke, if anything did.
         published: what the paper's own model found there.
         berman_wang: what Berman & Wang's quasi-steady model found there.
@@ -80,6 +103,7 @@ class Insect:
     wing: Wing
     stroke: Stroke
     k_table: WingFactors | None = None
+    force_constants: ForceConstants | None = None
     cfd: HoverReference | None = None
     published: HoverReference | None = None
     berman_wang: HoverReference | None = None
@@ -92,6 +116,7 @@ class Insect:
         _part(self, "wing", Wing)
         _part(self, "stroke", Stroke)
         _part(self, "k_table", WingFactors, optional=True)
+        _part(self, "force_constants", ForceConstants, optional=True)
         for source in ("cfd", "published", "berman_wang"):
             _part(self, source, HoverReference, optional=True)
 
@@ -116,11 +141,12 @@ def read_table(name: str) -> dict[str, dict[str, str]]:
 def _load_all() -> dict[str, Insect]:
     """The eight insects of Tables 1-3 by name."""
     factors, references = read_table("induced_power_factors.csv"), read_table("validation_table3.csv")
+    constants = read_table("berman_wang_insects.csv")
     insects = {}
     for name, row in read_table("insects.csv").items():
         number = {key: float(value) for key, value in row.items() if key != "insect"}
         table3 = references[name]
-        berman_wang = table3["berman_wang_weight_support"]
+        berman_wang, fitted = table3["berman_wang_weight_support"], constants.get(name)
         insects[name] = Insect(
             name=name,
             mass=number["mass_mg"] * 1e-6,
@@ -128,6 +154,7 @@ def _load_all() -> dict[str, Insect]:
                 length=number["wing_length_mm"] * 1e-3,
                 mean_chord=number["mean_chord_mm"] * 1e-3,
                 r1_hat=number["r1_hat"],
+                mass=float(fitted["wing_mass_mg"]) * 1e-6 if fitted else None,
             ),
             stroke=Stroke(
                 frequency=number["frequency_hz"],
@@ -139,6 +166,13 @@ def _load_all() -> dict[str, Insect]:
                 k_tip=float(factors[name]["k_tip"]),
                 k_revolving=float(factors[name]["k_ind_k_tip"]),
             ),
+            force_constants=ForceConstants(
+                lift_constant=float(fitted["C_T"]),
+                zero_drag=float(fitted["C_D0"]),
+                normal_drag=float(fitted["C_D90"]),
+            )
+            if fitted
+            else None,
             cfd=HoverReference(
                 weight_support=float(table3["cfd_weight_support"]),
                 specific_power=float(table3["cfd_specific_power_w_per_kg"]),
@@ -158,6 +192,8 @@ INSECTS: tuple[str, ...] = tuple(_load_all())
 
 def load_insect(name: str) -> Insect:
     """One of the eight insects, with the data of Tables 1-3 (Sun & Du 2003; Nabawy & Crowther 2014, Part II).
+
+    Fruit fly, bumblebee and hawkmoth also have Berman & Wang's (2007) constants and wing mass, read as one wing's.
 
     Args:
         name: one of `INSECTS`.

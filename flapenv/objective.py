@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero.checks import record
+from flapenv.case import HoverCase, hover_case, stack_cases
 from flapenv.insects import Insect
 from flapenv.optimum import Optimum, optimum
-from flapenv.performance import HoverCase, hover_averages, hover_case, stack_cases
+from flapenv.performance import hover_averages
 from flapenv.problem import HoverProblem
 
 LEAST_PENALTY = 3.0
@@ -33,9 +34,10 @@ class Score:
         power_term: -P*/P*_ref [-].
         lift_term: -λ max(0, 1 - Λ) [-].
         reward: the sum of both terms, not below the problem's floor [-].
-        bound_gap: P* over the proven bound, minus one, plus the charge for missing lift [-].
+        bound_gap: P* over the proven bound, minus one, plus the charge for missing lift [-]; see `has_bound`.
         optimality_gap: P*/P*_opt - 1 + c max(0, 1 - Λ) [-]; 0 where infeasible, see `feasible`.
         feasible: whether the insect of the row can hover in the box at all.
+        has_bound: whether a bound is proven; without one bound_gap is measured from the best stroke.
     """
 
     weight_support: np.ndarray
@@ -47,15 +49,16 @@ class Score:
     bound_gap: np.ndarray
     optimality_gap: np.ndarray
     feasible: np.ndarray
+    has_bound: np.ndarray
 
 
 class HoverObjective:
     """The exact-penalty objective -P*/P*_ref - λ max(0, 1-Λ) for a set of insects in one problem.
 
-    P*_ref is each insect's proven lower bound; λ exceeds the multiplier of its constrained optimum, which makes the
-    constrained optimum a maximum of the reward (an exact penalty; a quadratic one would settle short of the weight),
-    and in the default problem the only one (docs/optimum.md). Optima are solved when the objective is made, once per
-    process; scoring solves nothing.
+    P*_ref is each insect's proven lower bound, or its optimum where the coefficients leave no proof; λ exceeds the
+    multiplier of its constrained optimum, which makes that optimum a maximum of the reward (an exact penalty;
+    a quadratic one would settle short of the weight), and in the default problem the only one (docs/optimum.md). Optima
+    are solved when the objective is made, once per process; scoring solves nothing.
     """
 
     def __init__(self, insects: Sequence[Insect], problem: HoverProblem, dtype: Any = np.float64) -> None:
@@ -72,7 +75,7 @@ class HoverObjective:
         self.nodes = problem.box.time_nodes(tolerance=QUADRATURE_TOLERANCE)
 
         feasible = np.array([best.feasible for best in self.optima])
-        bound = np.array([best.lower_bound for best in self.optima])
+        bound = np.array([best.reference_power for best in self.optima])
         best_power = np.array([best.specific_power for best in self.optima])
         multiplier = np.array([best.multiplier for best in self.optima])
         self.lift_penalty = self._lift_penalty(feasible, multiplier / bound)
@@ -108,7 +111,7 @@ class HoverObjective:
     def _warn_of_a_flat_reward(self) -> None:
         """A best reward below the floor would leave nothing to learn from."""
         for best in self.optima:
-            reward = -best.specific_power / best.lower_bound
+            reward = -best.specific_power / best.reference_power
             if best.feasible and reward <= self.problem.reward_floor:
                 warnings.warn(
                     f"reward_floor = {self.problem.reward_floor:g} is above the reward {reward:.3g} of the optimum of "
@@ -149,6 +152,7 @@ class HoverObjective:
             bound_gap=-power_term - 1 + reference["bound_charge"] * deficit,
             optimality_gap=np.where(feasible, gap, 0),
             feasible=feasible,
+            has_bound=np.full(len(feasible), self.problem.model.is_plate),
         )
 
     def gap(self, number: int, weight_support: float, specific_power: float) -> float | None:

@@ -1,7 +1,7 @@
 """The least power that hovers: a proven lower bound, and the best stroke of the box found and verified.
 
-The bound holds for the paper's coefficients (2.7), (2.12), no profile drag, "elastic" power, a horizontal stroke
-plane, and every waveform φ(t), θ(t) within the limits that `lower_bound` states; the proofs are in docs/optimum.md.
+The bound holds for the paper's coefficients (2.7), (2.12) with profile drag or without, "elastic" power, a horizontal
+stroke plane, and every waveform φ(t), θ(t) within the limits that `lower_bound` states; proofs in docs/optimum.md.
 """
 
 import functools
@@ -12,10 +12,13 @@ import numpy as np
 
 from flapenv.aero.checks import is_single, record
 from flapenv.aero.stroke import Stroke
+from flapenv.case import HoverCase, hover_case, lift_constant
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.insects import Insect, as_insect
-from flapenv.performance import HoverCase, evaluate_by_blade_element, hover_averages, hover_case, lift_constant
+from flapenv.model import warn_of_aspect_ratio
+from flapenv.performance import hover_averages
 from flapenv.problem import HoverProblem, as_problem
+from flapenv.simulation import evaluate_by_blade_element
 
 SAMPLES, CANDIDATES, STARTS = 512, 64, 5
 """Strokes drawn over the box, the best of them, and those of the best, far apart, that the search starts at."""
@@ -39,7 +42,8 @@ class Optimum:
         stroke: the best stroke of the box; the one with the largest lift where none carries the weight.
         weight_support: Λ of that stroke [-].
         specific_power: P* of that stroke [W/kg].
-        lower_bound: proven: no stroke of the box hovers with less, nor any waveform in `lower_bound`'s scope [W/kg].
+        lower_bound: proven: no stroke of the box hovers with less, nor any waveform in `lower_bound`'s scope [W/kg];
+            None where the coefficients leave no proof.
         max_weight_support: Λ_max, the largest Λ in the box [-].
         multiplier: dP*/dΛ of the optimum, what a unit of weight support costs [W/kg]; 0 where the weight does not
             bind, inf at the limit of lift.
@@ -54,7 +58,7 @@ class Optimum:
     stroke: Stroke
     weight_support: float
     specific_power: float
-    lower_bound: float
+    lower_bound: float | None
     max_weight_support: float
     multiplier: float
     active_bounds: tuple[tuple[str, str], ...]
@@ -63,21 +67,27 @@ class Optimum:
     wingbeats: int
 
     @property
-    def gap_to_bound(self) -> float:
-        """P* over the lower bound, minus one [-]."""
-        return self.specific_power / self.lower_bound - 1
+    def gap_to_bound(self) -> float | None:
+        """P* over the lower bound, minus one [-]; None where no bound is proven."""
+        return None if self.lower_bound is None else self.specific_power / self.lower_bound - 1
+
+    @property
+    def reference_power(self) -> float:
+        """What powers are measured in: the proven bound, or P* of the stroke where none is proven [W/kg]."""
+        return self.specific_power if self.lower_bound is None else self.lower_bound
 
 
-def lower_bound(case: HoverCase, problem: HoverProblem) -> np.ndarray | float:
+def lower_bound(case: HoverCase, problem: HoverProblem) -> np.ndarray | float | None:
     """Least P* that any waveform within the limits of the problem can hover with, proven [W/kg].
 
-    With A_L = Λ/⟨v² sin 2α⟩ and A_P = P*/⟨v³ sin² α⟩ at the largest C_T of the box, the larger of
+    With A_L = Λ/⟨v² sin 2α⟩, A_P = P*/⟨v³ (e/2 + sin² α)⟩, e = C_D0/C_T, at the largest C_T of the box, the larger of
 
-        A_P h(α_min) A_L^(-1.5),  h(α) = sin² α/(sin 2α)^1.5     for α_min <= α(t) <= 180° - α_min and any φ(t);
-        A_P/(4 A_L² v̄_max)                                       for any α(t) and mean speeds up to v̄_max = 4 f φmax.
+        A_P h(α₀) A_L^(-1.5),  h(α) = (e/2 + sin² α)/(sin 2α)^1.5     for α_min <= α(t) <= 180° - α_min and any φ(t);
+        A_P/(4 A_L² v̄_max)                                          for any α(t) and mean speeds up to v̄_max = 4 f φmax.
 
-    The first, which is the larger in the default box, holds for every waveform, the second for those that reverse once
-    at each end of the stroke, as all of (2.1) do: more reversals would raise the mean speed beyond 4 f φmax.
+    α₀ is the least h's angle from α_min up: α_min itself unless profile drag puts it higher. The first, which is the
+    larger in the default box, holds for every waveform, the second for those that reverse once at each end of the
+    stroke, as all of (2.1) do: more reversals would raise the mean speed beyond 4 f φmax.
     Both decrease with C_T, which grows with φmax and with f, so its largest value in the box serves every stroke.
 
     Args:
@@ -85,17 +95,28 @@ def lower_bound(case: HoverCase, problem: HoverProblem) -> np.ndarray | float:
         problem: the box and the model.
 
     Returns:
-        The bound, of the case's shape.
+        The bound, of the case's shape; None for coefficients other than (2.7), (2.12) and profile drag, for which no
+        bound is proven.
     """
+    if not problem.model.is_plate:
+        return None
     amplitude = problem.box.flap_amplitude[1]
     speed = 4 * problem.box.bounds("frequency", case.reference_frequency)[1] * amplitude
     constant = lift_constant(case, problem.model, speed, amplitude)
     lift_factor = case.lift_scale * constant
     power_factor = 2 * case.power_scale * constant
-    alpha = problem.min_angle_of_attack
-    angle_bound = power_factor * lift_factor**-1.5 * 2**-1.5 * math.sqrt(math.tan(alpha)) / math.cos(alpha)
+    ratio = problem.model.profile_drag / constant
+    alpha = np.maximum(problem.min_angle_of_attack, _free_angle(ratio))
+    friction = 1 + ratio / 2 / np.maximum(np.sin(alpha) ** 2, np.finfo(float).tiny)
+    angle_bound = power_factor * lift_factor**-1.5 * 2**-1.5 * np.sqrt(np.tan(alpha)) / np.cos(alpha) * friction
     speed_bound = power_factor / (4 * lift_factor**2 * speed)
     return np.maximum(angle_bound, speed_bound)
+
+
+def _free_angle(ratio: np.ndarray | float) -> np.ndarray | float:
+    """The angle of the least (e/2 + sin² α)/(sin 2α)^1.5, cos 2α = (3(1+e) - √(9(1+e)² - 8))/2 [rad]; e = C_D0/C_T."""
+    sum_ = 3 * (1 + np.asarray(ratio))
+    return np.arccos(np.minimum(1.0, (sum_ - np.sqrt(sum_**2 - 8)) / 2)) / 2
 
 
 def optimum(insect: Insect | str, problem: HoverProblem | str | None = None) -> Optimum:
@@ -119,6 +140,7 @@ def optimum(insect: Insect | str, problem: HoverProblem | str | None = None) -> 
     insect, problem = as_insect(insect), as_problem(problem)
     if not is_single(insect):
         raise TypeError("insect has array fields; allowed: one insect with scalar fields")
+    warn_of_aspect_ratio(insect.name, insect.wing.aspect_ratio, problem.model, stacklevel=3)
     return _solve(insect, problem)
 
 
@@ -138,6 +160,7 @@ def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
         point = search.settle(search.minimise("power", starts))
     weight_support, specific_power = (float(value) for value in search.evaluate(point))
     stroke = search.stroke(point)
+    bound = lower_bound(search.case, problem)
     checked = _confirmed(insect, stroke, problem, (weight_support, specific_power))
     return Optimum(
         insect=insect.name,
@@ -145,7 +168,7 @@ def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
         stroke=stroke,
         weight_support=weight_support,
         specific_power=specific_power,
-        lower_bound=float(lower_bound(search.case, problem)),
+        lower_bound=None if bound is None else float(bound),
         max_weight_support=max(max_weight_support, weight_support),
         multiplier=search.multiplier(point) if feasible else math.inf,
         active_bounds=search.active_bounds(stroke),
@@ -162,7 +185,7 @@ def _confirmed(
     checked = found
     for steps in ORACLE_STEPS:
         checked = evaluate_by_blade_element(
-            insect, stroke, strips=6, steps=steps, spacing="gauss-jacobi", **vars(problem.model)
+            insect, stroke, strips=6, steps=steps, spacing="gauss", **vars(problem.model)
         )
         if np.allclose(checked, found, rtol=ORACLE_TOLERANCE, atol=1e-9):  # a stroke may lift nothing at all
             return checked

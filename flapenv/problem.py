@@ -11,7 +11,7 @@ from flapenv.aero.arrays import Real
 from flapenv.aero.checks import record, require_name, require_scalar
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.wingbeat import time_nodes
-from flapenv.performance import HoverModel
+from flapenv.model import COEFFICIENTS, HoverModel
 
 Interval = tuple[float, float]
 
@@ -145,10 +145,10 @@ class HoverProblem:
             object.__setattr__(self, "lift_penalty", penalty)
         floor = require_scalar("reward_floor", self.reward_floor, high=0.0, open_high=True)
         object.__setattr__(self, "reward_floor", floor)
-        if self.model.induced and self.box.flap_amplitude[1] > math.pi / 2:
+        if self.model.uses_k and self.box.flap_amplitude[1] > math.pi / 2:
             raise ValueError(
                 f"upper bound of flap_amplitude = {self.box.flap_amplitude[1]:.6g} is not allowed; allowed: up to "
-                "1.5708 rad where k_flap is used, more only with model={'induced': False}"
+                "1.5708 rad where k_flap is used, more only with model={'induced': False} or coefficients without k"
             )
         if self.name is None:
             rest = (field for field in fields(self) if field.name not in ("name", "box", "model"))
@@ -162,7 +162,16 @@ class HoverProblem:
         return math.pi / 2 - self.box.pitch_amplitude[1]
 
     def to_dict(self) -> dict[str, Any]:
-        """The problem as JSON keeps it; `HoverProblem(**d)` gives it back."""
+        """The problem as JSON keeps it; `HoverProblem(**d)` gives it back.
+
+        Raises:
+            TypeError: for coefficients that are a function, which no file can hold.
+        """
+        if callable(self.model.coefficients):
+            raise TypeError(
+                f"coefficients = {self.model.coefficients!r} cannot be written to a file; allowed there: a name of "
+                f"{', '.join(COEFFICIENTS)}"
+            )
         return asdict(self)
 
 

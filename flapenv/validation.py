@@ -5,7 +5,8 @@ import numpy as np
 from flapenv.aero import induced
 from flapenv.aero.checks import record
 from flapenv.insects import INSECTS, HoverReference, load_insect, read_table
-from flapenv.performance import HoverModel, evaluate
+from flapenv.model import HoverModel
+from flapenv.performance import evaluate
 from flapenv.tables import text_table
 
 

@@ -1,18 +1,34 @@
 """The aerodynamics: wings, strokes, coefficients and their averages. It knows no insects, rewards or environments."""
 
-from flapenv.aero.blade_element import BladeElementHistory, blade_element
+from flapenv.aero.blade_element import TERMS, blade_element
+from flapenv.aero.force_laws import BermanWangLaw, FittedLaw, ForceLaw, PlateLaw, PolhamusLaw
+from flapenv.aero.history import TermHistory, WingbeatHistory
+from flapenv.aero.motions import FourierMotion, Motion, SampledMotion
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeParameter
-from flapenv.aero.stroke import Motion, Stroke
+from flapenv.aero.planform import BetaPlanform, FunctionPlanform, TabulatedPlanform
+from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.aero.wingbeat import speed_averages, time_nodes
 
 __all__ = [
     "STROKE_PARAMETERS",
-    "BladeElementHistory",
+    "TERMS",
+    "BermanWangLaw",
+    "BetaPlanform",
+    "FittedLaw",
+    "ForceLaw",
+    "FourierMotion",
+    "FunctionPlanform",
     "Motion",
+    "PlateLaw",
+    "PolhamusLaw",
+    "SampledMotion",
     "Stroke",
     "StrokeParameter",
+    "TabulatedPlanform",
+    "TermHistory",
     "Wing",
+    "WingbeatHistory",
     "blade_element",
     "speed_averages",
     "time_nodes",

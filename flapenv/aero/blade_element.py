@@ -1,122 +1,249 @@
-"""The oracle: the paper's blade-element method read plainly, strip by strip and instant by instant.
+"""The blade element, strip by strip and instant by instant: any wing, any motion, every force term of the paper.
 
-Every faster path is tested against it. It takes any planar motion, knows nothing of symmetry and uses the formulas in
-the paper's own form (angle of attack, lift and drag coefficient), not the ones the fast path simplifies to.
+It is built on velocities and normals, not on angles, knows nothing of symmetry or exact moments, and is the oracle that
+every faster path is tested against. With V the velocity of a strip through the air, without its spanwise part,
+
+    translational   dF = ½ρ c (|V|² C_L l̂ - C_D |V| V) dr                  (2.4), (2.7), (2.12)
+    rotational      dF = -ρ C_rot c² |V| θ̇ n̂ dr, C_rot = π(0.75 - x̂₀)      (2.13)-(2.15), Ω = θ̇
+    added mass      dF = -(πρc²/4) V̇ₙ n̂ dr, Vₙ at mid-chord                (2.16)
+    inertia         of a flat plate of even surface mass                   `flapenv.aero.inertia`
+
+The first two act on the pitching axis, the third at mid-chord. Muscles hold the wing against all of it: with ξ the
+distance of a force behind the pitching axis, Q_φ = -∫r dF·ê_φ, Q_θ = -∫ξ dF·n̂ and the power is Q_φ φ̇ + Q_θ θ̇, which is
+the work done relative to the body and, for a body at rest, -∫dF·V.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from flapenv.aero.checks import require_count, require_name, require_real
-from flapenv.aero.coefficients import drag_coefficient, lift_coefficient
-from flapenv.aero.stroke import Motion, angle_of_attack
+from flapenv.aero.axes import LEFT, RIGHT, flapping_directions, to_stroke_plane
+from flapenv.aero.checks import require_count, require_name, require_real, require_scalar
+from flapenv.aero.force_laws import ForceLaw
+from flapenv.aero.history import TermHistory, WingbeatHistory
+from flapenv.aero.inertia import wing_inertia
+from flapenv.aero.motions import Kinematics, Motion
 from flapenv.aero.wing import Wing
 
 STRIPS, STEPS = 50, 500
 """The paper's resolution (Part II, section 3.3)."""
+TERMS = ("translational", "rotational", "added-mass", "inertia")
+"""The force terms; the paper's tables hold the first alone."""
+SPACINGS = ("even", "gauss")
+BLOCK = 2**18
+"""Strips times instants that are computed at once, to bound the memory."""
+
+
+def rotational_coefficient(pitch_axis: float) -> float:
+    """C_rot = π(0.75 - x̂₀) [-]  (2.15).
+
+    Args:
+        pitch_axis: x̂₀, the pitching axis behind the leading edge [chords].
+    """
+    return math.pi * (0.75 - pitch_axis)  # (2.15)
 
 
 @dataclass(frozen=True, kw_only=True)
-class BladeElementHistory:
-    """Angles, forces and power over one wingbeat, each of shape (steps,).
+class _Strips:
+    """Strips of one wing, shape (s,): radius [m], chord [m], area [m²]; and the pitching axis [chords]."""
 
-    Attributes:
-        phase: ωt at the instants [rad].
-        flap_angle: φ [rad].
-        flap_rate: φ̇ [rad/s].
-        pitch_angle: θ [rad].
-        angle_of_attack: α [rad].
-        lift: vertical force of the wing pair [N].
-        power: aerodynamic power of the wing pair [W].
-    """
-
-    phase: np.ndarray
-    flap_angle: np.ndarray
-    flap_rate: np.ndarray
-    pitch_angle: np.ndarray
-    angle_of_attack: np.ndarray
-    lift: np.ndarray
-    power: np.ndarray
+    radius: np.ndarray
+    chord: np.ndarray
+    area: np.ndarray
+    pitch_axis: float
 
     @property
-    def mean_lift(self) -> float:
-        """Mean over the cycle [N]."""
-        return float(np.mean(self.lift))
+    def middle(self) -> np.ndarray:
+        """Distance of mid-chord behind the pitching axis [m]."""
+        return (0.5 - self.pitch_axis) * self.chord
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Flow:
+    """Velocity of the pitching axis through the air, (n, 1) or (n, s), and its rates [m/s], [m/s²]."""
+
+    along: np.ndarray  # V·ê_φ
+    along_rate: np.ndarray
+    upward: float  # V·ẑ₁, the same along the wing and over the beat
+    sine: np.ndarray  # of θ
+    cosine: np.ndarray
+    pitch_rate: np.ndarray
+    pitch_acceleration: np.ndarray
 
     @property
-    def mean_power(self) -> float:
-        """Mean over the cycle, negative power returned ("elastic" accounting) [W]."""
-        return float(np.mean(self.power))
+    def chordwise(self) -> np.ndarray:
+        """V·ê_c."""
+        return self.along * self.sine + self.upward * self.cosine
+
+    @property
+    def normal(self) -> np.ndarray:
+        """V·n̂."""
+        return -self.along * self.cosine + self.upward * self.sine
 
 
 def blade_element(
     wing: Wing,
     motion: Motion,
-    lift_constant: float,
+    law: ForceLaw,
     *,
     air_density: float,
+    terms: Sequence[str] = ("translational",),
+    stroke_plane_angle: float = 0.0,
+    body_velocity: Sequence[float] = (0.0, 0.0, 0.0),
     strips: int = STRIPS,
     steps: int = STEPS,
     spacing: str = "even",
-) -> BladeElementHistory:
-    """Sum the translational force over the strips of both wings at each instant  (2.3), (2.4), (2.7), (2.12).
-
-        dL = ½ρ V² C_L c dr,   dD = ½ρ V² C_D c dr,   V = |φ̇| r,   P = ∫ V dD
+) -> WingbeatHistory:
+    """Sum every force term over the strips of both wings at each instant of one wingbeat.
 
     Args:
         wing: one wing, scalar fields.
         motion: a `Stroke` with scalar fields, or any motion that answers as `Motion` says.
-        lift_constant: C_T [-].
+        law: C_L and C_D, scalar constants.
         air_density: ρ [kg/m³].
+        terms: which of `TERMS` to sum.
+        stroke_plane_angle: σ, 0 horizontal, positive where the stroke plane's normal leans forward [rad].
+        body_velocity: of the body through the air in earth axes: forward, left, up; shape (3,) [m/s].
         strips: strips over the span.
         steps: instants over the cycle, midway between even divisions.
-        spacing: "even" strips at mid-strip as in the paper, or "gauss-jacobi" points weighted with the chord, which
-            integrate the span exactly from two points up.
+        spacing: "even" strips at mid-strip as in the paper, or "gauss" points weighted with the chord, which
+            for the beta planform integrate the span exactly from two points up where V ∝ r.
 
     Returns:
         The history over one wingbeat.
 
     Raises:
-        TypeError: for a count that is not a whole number.
-        ValueError: for an unknown spacing, a count below one or a number that is not finite and positive.
+        TypeError: for a count that is not a whole number, or fields that are not single numbers.
+        ValueError: for an unknown term or spacing, a number out of range, a wing without mass where inertia is asked
+            for, or a triangular stroke where accelerations count.
+
+    Source: Nabawy & Crowther (2014), Part II, (2.3)-(2.16) and section 3.3.
     """
     require_count("strips", strips)
     require_count("steps", steps)
-    require_name("spacing", spacing, ("even", "gauss-jacobi"))
-    require_real("lift_constant", lift_constant, 0.0, open_low=True)
+    require_name("spacing", spacing, SPACINGS)
+    if isinstance(terms, str) or not len(terms):
+        raise ValueError(f"terms = {terms!r} is not allowed; allowed: a list of {', '.join(TERMS)}")
+    for term in terms:
+        require_name("terms", term, TERMS)
     require_real("air_density", air_density, 0.0, open_low=True, unit="kg/m³")
+    angle = require_scalar("stroke_plane_angle", stroke_plane_angle, -math.pi, math.pi, unit="rad")
+    velocity = np.asarray(require_real("body_velocity", body_velocity, unit="m/s"))
+    if velocity.shape != (3,):
+        raise TypeError(f"body_velocity has shape {velocity.shape}; allowed: (3,), forward, left and up [m/s]")
 
-    radius, strip_area = _even_strips(wing, strips) if spacing == "even" else _gauss_jacobi_strips(wing, strips)
     phase = 2 * math.pi * (np.arange(steps) + 0.5) / steps
-    flap_rate, pitch = motion.flap_rate(phase), motion.pitch_angle(phase)
-    alpha = angle_of_attack(pitch, flap_rate)  # (2.3)
-    speed = np.abs(flap_rate)[:, None] * radius
-    strip_force = 0.5 * air_density * speed**2 * strip_area  # times C_L or C_D: (2.4)
-    lift = strip_force * lift_coefficient(alpha, lift_constant)[:, None]
-    drag = strip_force * drag_coefficient(alpha, lift_constant)[:, None]
-    return BladeElementHistory(
-        phase=phase,
-        flap_angle=motion.flap_angle(phase),
-        flap_rate=flap_rate,
-        pitch_angle=pitch,
-        angle_of_attack=alpha,
-        lift=2 * np.sum(lift, axis=1),
-        power=2 * np.sum(drag * speed, axis=1),
+    at = Kinematics.of(motion, phase)
+    if getattr(motion, "flap_shape", 0.0) == 1 and {"added-mass", "inertia"} & set(terms):
+        raise ValueError(
+            "flap_shape = 1 is not allowed with added mass or inertia: a triangle's acceleration is infinite at its "
+            "corners; allowed: below 1"
+        )
+    body = to_stroke_plane(velocity, angle)
+    cut = _cut(wing, strips, spacing)
+    density = float(air_density)
+    found = {
+        term: _inertia(wing, at) if term == "inertia" else _aerodynamic(term, cut, at, law, density, body)
+        for term in dict.fromkeys(terms)
+    }
+    representative = _flow(at, np.array([math.sqrt(wing.moment(2)) * wing.length]), body, RIGHT)
+    alpha = np.arctan2(np.abs(representative.normal), representative.chordwise)[:, 0]  # (2.3)
+    return WingbeatHistory(phase=phase, kinematics=at, angle_of_attack=alpha, stroke_plane_angle=angle, terms=found)
+
+
+def _cut(wing: Wing, strips: int, spacing: str) -> _Strips:
+    """The wing cut into strips."""
+    if spacing == "even":
+        r_hat = (np.arange(strips) + 0.5) / strips
+        area = wing.chord(r_hat) * wing.length / strips
+    else:
+        r_hat, shares = wing.shape.strips(strips)
+        area = shares * wing.area
+    return _Strips(radius=r_hat * wing.length, chord=wing.chord(r_hat), area=area, pitch_axis=wing.pitch_axis)
+
+
+def _flow(at: Kinematics, radius: np.ndarray, body: np.ndarray, side: int) -> _Flow:
+    """How the strips of one wing move through the air, at all instants of `at`."""
+    along, outward = flapping_directions(at.flap, side)
+    return _Flow(
+        along=at.flap_rate[:, None] * radius + (along @ body)[:, None],
+        along_rate=at.flap_acceleration[:, None] * radius - (at.flap_rate * (outward @ body))[:, None],
+        upward=float(body[2]),
+        sine=np.sin(at.pitch)[:, None],
+        cosine=np.cos(at.pitch)[:, None],
+        pitch_rate=at.pitch_rate[:, None],
+        pitch_acceleration=at.pitch_acceleration[:, None],
     )
 
 
-def _even_strips(wing: Wing, strips: int) -> tuple[np.ndarray, np.ndarray]:
-    """Radius [m] and area [m²] of equal strips, the chord taken in their middle."""
-    r_hat = (np.arange(strips) + 0.5) / strips
-    return r_hat * wing.length, wing.chord(r_hat) * wing.length / strips
+def _aerodynamic(
+    term: str, cut: _Strips, at: Kinematics, law: ForceLaw, density: float, body: np.ndarray
+) -> TermHistory:
+    """One aerodynamic term of both wings; the left wing mirrors the right unless the body slips sideways."""
+    right = _one_wing(term, cut, at, law, density, body, RIGHT)
+    left = right if body[1] == 0 else _one_wing(term, cut, at, law, density, body, LEFT)
+    total = np.zeros((len(at.flap), 3))
+    for side, (along_force, upward_force, _, _) in ((RIGHT, right), (LEFT, left)):
+        along, _ = flapping_directions(at.flap, side)
+        total += along_force[:, None] * along
+        total[:, 2] += upward_force
+    flap_torque, pitch_torque = (-np.stack([right[i], left[i]]) for i in (2, 3))
+    return TermHistory(
+        force=total,
+        flap_torque=flap_torque,
+        pitch_torque=pitch_torque,
+        power=flap_torque * at.flap_rate + pitch_torque * at.pitch_rate,
+    )
 
 
-def _gauss_jacobi_strips(wing: Wing, strips: int) -> tuple[np.ndarray, np.ndarray]:
-    """Radius [m] and area [m²] of the Gauss-Jacobi points of the beta planform."""
-    from scipy.special import roots_jacobi
+def _one_wing(
+    term: str, cut: _Strips, at: Kinematics, law: ForceLaw, density: float, body: np.ndarray, side: int
+) -> tuple[np.ndarray, ...]:
+    """Force along ê_φ and ẑ₁ [N] and moments about the flapping and the pitching axis [N m] of one wing's term."""
+    blocks = max(1, math.ceil(len(at.flap) * len(cut.radius) / BLOCK))
+    parts = []
+    for rows in np.array_split(np.arange(len(at.flap)), blocks):
+        part = Kinematics(**{name: value[rows] for name, value in vars(at).items()})
+        flow = _flow(part, cut.radius, body, side)
+        chordwise, normal, lever = _strip_forces(term, cut, flow, law, density)
+        along = chordwise * flow.sine - normal * flow.cosine
+        upward = chordwise * flow.cosine + normal * flow.sine
+        parts.append((along.sum(axis=1), upward.sum(axis=1), along @ cut.radius, normal @ lever))
+    return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
 
-    p, q = wing.beta_exponents
-    x, weights = roots_jacobi(strips, q - 1, p - 1)
-    return (x + 1) / 2 * wing.length, weights / np.sum(weights) * wing.area
+
+def _strip_forces(
+    term: str, cut: _Strips, flow: _Flow, law: ForceLaw, density: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Forces on every strip along ê_c and n̂, shape (n, s) [N], and how far behind the pitching axis they act [m]."""
+    on_axis = np.zeros_like(cut.chord)
+    if term == "translational":
+        chordwise, normal = law.strip_force(flow.chordwise, flow.normal)
+        return 0.5 * density * cut.area * chordwise, 0.5 * density * cut.area * normal, on_axis  # (2.4)
+    if term == "rotational":
+        speed = np.hypot(flow.along, flow.upward)
+        circulation = rotational_coefficient(cut.pitch_axis) * flow.pitch_rate * cut.chord  # Γ/c  (2.14)
+        return np.zeros_like(speed), -density * circulation * speed * cut.area, on_axis  # (2.13)
+    normal_rate = (
+        -flow.along_rate * flow.cosine
+        + (flow.along * flow.sine + flow.upward * flow.cosine) * flow.pitch_rate
+        + cut.middle * flow.pitch_acceleration
+    )
+    mass = math.pi / 4 * density * cut.chord * cut.area
+    return np.zeros_like(normal_rate), -mass * normal_rate, cut.middle  # (2.16)
+
+
+def _inertia(wing: Wing, at: Kinematics) -> TermHistory:
+    """The wings' own inertia, by exact moments of mass."""
+    moments = wing_inertia(wing)
+    flap_torque, pitch_torque = (
+        np.stack([torque, torque]) for torque in (moments.flap_torque(at), moments.pitch_torque(at))
+    )
+    return TermHistory(
+        force=moments.pair_force(at),
+        flap_torque=flap_torque,
+        pitch_torque=pitch_torque,
+        power=flap_torque * at.flap_rate + pitch_torque * at.pitch_rate,
+    )

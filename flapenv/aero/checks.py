@@ -137,10 +137,13 @@ def require_flag(field: str, value: object) -> bool:
 
 
 def is_single(value: Any) -> bool:
-    """Whether a value, or every field of a record and of the records in it, is free of array axes."""
+    """Whether a value, or every field of a record and of the records in it, is free of array axes.
+
+    A tuple is the structure of one thing, such as a planform's table; only arrays and tensors are batches.
+    """
     if is_dataclass(value) and not isinstance(value, type):
         return all(is_single(part) for part in vars(value).values())
-    return isinstance(value, str) or value is None or np.ndim(value) == 0
+    return not hasattr(value, "shape") or np.ndim(value) == 0
 
 
 def require_count(field: str, value: object, low: int = 1) -> int:

@@ -1,9 +1,6 @@
 """The stroke: waveforms of the flapping and pitching angles over one wingbeat, (2.1)-(2.3), and their rates."""
 
 import math
-from typing import Any, Protocol
-
-import numpy as np
 
 from flapenv.aero.arrays import Real, as_arrays
 from flapenv.aero.checks import record
@@ -76,25 +73,11 @@ def angle_of_attack(pitch_angle: Real, flap_rate: Real) -> Real:
     return math.pi / 2 - pitch_angle * xp.sign(flap_rate)
 
 
-class Motion(Protocol):
-    """What the blade-element oracle asks of a wing motion; phases ωt [rad], angles [rad], rates [rad/s]."""
-
-    @property
-    def frequency(self) -> Any:
-        """The frequency f [Hz]."""
-
-    @property
-    def flap_amplitude(self) -> Any:
-        """The flapping amplitude φmax [rad]."""
-
-    def flap_angle(self, phase: np.ndarray) -> np.ndarray:
-        """φ at the phases [rad]."""
-
-    def flap_rate(self, phase: np.ndarray) -> np.ndarray:
-        """φ̇ at the phases [rad/s]."""
-
-    def pitch_angle(self, phase: np.ndarray) -> np.ndarray:
-        """θ at the phases [rad]."""
+def _sech_squared(value: Real) -> Real:
+    """sech², without overflow [-]."""
+    xp, value = as_arrays(value)
+    decay = xp.exp(-2 * xp.abs(value))
+    return 4 * decay / (1 + decay) ** 2
 
 
 @record
@@ -156,9 +139,30 @@ class Stroke:
             phase, self.pitch_amplitude, self.frequency, self.pitch_phase, self.pitch_shape
         )
         shape = xp.clip(shape, SMALLEST_SHAPE, None)
-        decay = xp.exp(-2 * xp.abs(shape * xp.sin(phase + delta)))
-        sech_squared = 4 * decay / (1 + decay) ** 2
-        return amplitude * 2 * math.pi * frequency * shape * xp.cos(phase + delta) * sech_squared / xp.tanh(shape)
+        decay = _sech_squared(shape * xp.sin(phase + delta))
+        return amplitude * 2 * math.pi * frequency * shape * xp.cos(phase + delta) * decay / xp.tanh(shape)
+
+    def flap_acceleration(self, phase: Real) -> Real:
+        """φ̈(ωt) = -φmax Cφ ω² (1-Cφ²) sin ωt/(asin(Cφ) (1-Cφ² sin² ωt)^1.5) [rad/s²], from (2.1).
+
+        The triangle, Cφ = 1, has none but at its corners, where it is infinite and 0 is returned.
+        """
+        xp, phase, amplitude, frequency, shape = as_arrays(phase, self.flap_amplitude, self.frequency, self.flap_shape)
+        shape = xp.clip(shape, SMALLEST_SHAPE, None)
+        rest = (1 - shape) * (1 + shape)
+        root = xp.sqrt(xp.clip(rest + (shape * xp.cos(phase)) ** 2, 1e-36, None))
+        omega = 2 * math.pi * frequency
+        return -amplitude * omega**2 * (shape / xp.asin(shape)) * (rest / root**3) * xp.sin(phase)
+
+    def pitch_acceleration(self, phase: Real) -> Real:
+        """θ̈(ωt) = -θmax ω² Cθ sech² u (sin(ωt+δ) + 2 Cθ cos²(ωt+δ) tanh u)/tanh(Cθ) [rad/s²], u = Cθ sin(ωt+δ)."""
+        xp, phase, amplitude, frequency, delta, shape = as_arrays(
+            phase, self.pitch_amplitude, self.frequency, self.pitch_phase, self.pitch_shape
+        )
+        shape = xp.clip(shape, SMALLEST_SHAPE, None)
+        sine, cosine, omega = xp.sin(phase + delta), xp.cos(phase + delta), 2 * math.pi * frequency
+        bend = sine + 2 * shape * cosine**2 * xp.tanh(shape * sine)
+        return -amplitude * omega**2 * shape * _sech_squared(shape * sine) * bend / xp.tanh(shape)
 
     def angle_of_attack(self, phase: Real) -> Real:
         """α(ωt) [rad]  (2.3)."""

@@ -6,13 +6,14 @@ crowd towards both ends, where Cφ → 1 and Cθ → ∞ put thin layers. Distan
 digits are lost there in single precision.
 """
 
-import functools
 import math
 
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_arrays, as_like, as_numpy
 from flapenv.aero.checks import require_scalar
+from flapenv.aero.force_laws import ForceLaw, PlateLaw
+from flapenv.aero.quadrature import graded_rule
 from flapenv.aero.stroke import flap_speed, pitch_waveform
 
 THINNEST_LAYER = 1e-7
@@ -45,21 +46,19 @@ def time_nodes(flap_shape: Real, pitch_shape: Real, *, tolerance: float = 1e-9) 
     return math.ceil(21 * layer**-0.21 * -math.log10(tolerance) / 6)
 
 
-@functools.lru_cache(maxsize=64)
-def _graded_rule(nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights on (0, 1): Gauss-Legendre in x, crowded to both ends by s = sin²(πx/2)."""
-    x, weights = np.polynomial.legendre.leggauss(nodes)
-    x = (x + 1) / 2
-    return np.sin(math.pi * x / 2) ** 2, weights / 2 * math.pi / 2 * np.sin(math.pi * x)
-
-
 def speed_averages(
-    flap_shape: Real, pitch_amplitude: Real, pitch_shape: Real, pitch_phase: Real, *, nodes: int
+    flap_shape: Real,
+    pitch_amplitude: Real,
+    pitch_shape: Real,
+    pitch_phase: Real,
+    *,
+    nodes: int,
+    law: ForceLaw | None = None,
 ) -> tuple[Real, Real]:
     """⟨φ̇|φ̇| sin 2θ⟩/v̄² and ⟨|φ̇|³ cos² θ⟩/v̄³ with v̄ = ⟨|φ̇|⟩ = 4 f φmax: lift and power of the waveform alone.
 
     With α = 90° - θ sgn φ̇ these are ⟨v² sin 2α⟩/v̄² and ⟨v³ sin² α⟩/v̄³; the triangle with a square pitch gives
-    sin 2α and sin² α.
+    sin 2α and sin² α. With a `law` they are ⟨v² C_L⟩/v̄² and ⟨v³ C_D⟩/v̄³.
 
     Args:
         flap_shape: Cφ [-], broadcast with the rest, shape (...).
@@ -67,6 +66,7 @@ def speed_averages(
         pitch_shape: Cθ [-].
         pitch_phase: δ [rad].
         nodes: per piece of the half-stroke, from `time_nodes`.
+        law: force law whose constants broadcast with the rest, or None for sin 2α and sin² α.
 
     Returns:
         The lift and the power average [-], shape (...).
@@ -77,7 +77,8 @@ def speed_averages(
     flap_shape, pitch_amplitude, pitch_shape = (
         value[..., None] for value in (flap_shape, pitch_amplitude, pitch_shape)
     )
-    fractions, weights = as_like(pitch_phase, *_graded_rule(nodes))
+    law = law and law.along_nodes(pitch_phase)
+    fractions, weights = as_like(pitch_phase, *graded_rule(nodes))
     half_turns = xp.round(pitch_phase / math.pi)
     sense = (1 - 2 * (half_turns % 2))[..., None]  # sign of θ after its reversal
     before = (half_turns * math.pi - pitch_phase + math.pi / 2)[..., None]  # from stroke to pitch reversal
@@ -86,8 +87,43 @@ def speed_averages(
         speed = flap_speed(xp.sin(length * fractions), flap_shape) * (math.pi / 2)
         pitch = pitch_amplitude * pitch_waveform(xp.sin(length * (1 - fractions)), pitch_shape)
         share = length[..., 0] / math.pi
-        sine, cosine = xp.sin(pitch), xp.cos(pitch)
+        sine, cosine = xp.sin(pitch), xp.cos(pitch)  # cosine and sine of the folded angle of attack
         dynamic = speed * speed
-        lift = lift + share * sign[..., 0] * ((dynamic * sine * cosine) @ (2 * weights))
-        power = power + share * ((dynamic * speed * cosine * cosine) @ weights)
+        if law is None:
+            lift = lift + share * sign[..., 0] * ((dynamic * sine * cosine) @ (2 * weights))
+            power = power + share * ((dynamic * speed * cosine * cosine) @ weights)
+        else:
+            lift = lift + share * sign[..., 0] * ((dynamic * law.lift(cosine, sine)) @ weights)
+            power = power + share * ((dynamic * speed * law.drag(cosine, sine)) @ weights)
     return lift, power
+
+
+def force_averages(
+    law: ForceLaw,
+    *,
+    flap_shape: Real,
+    pitch_amplitude: Real,
+    pitch_shape: Real,
+    pitch_phase: Real,
+    nodes: int,
+) -> tuple[Real, Real]:
+    """⟨v² C_L⟩/(C_T v̄²) and ⟨v³ C_D⟩/(2 C_T v̄³) of any force law, C_T its `lift_constant`.
+
+    They are `speed_averages` where the force is normal to the chord, which needs no coefficient at the nodes.
+
+    Args:
+        law: the force law; its constants broadcast with the rest, shape (...).
+        flap_shape: Cφ [-].
+        pitch_amplitude: θmax [rad].
+        pitch_shape: Cθ [-].
+        pitch_phase: δ [rad].
+        nodes: per piece of the half-stroke, from `time_nodes`.
+
+    Returns:
+        The lift and the power average [-], shape (...).
+    """
+    if isinstance(law, PlateLaw) and law.profile_drag == 0:
+        return speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, nodes=nodes)
+    lift, power = speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, nodes=nodes, law=law)
+    _, lift, power, constant = as_arrays(lift, power, law.lift_constant)
+    return lift / constant, power / (2 * constant)

@@ -186,6 +186,7 @@ class HoverVectorEnv(BatchEnv):
             **{f"stroke/{name}": value for name, value in strokes.items()},
             "clipped": clipped,
             "bound_gap": score.bound_gap,
+            "_bound_gap": score.has_bound,
             "optimality_gap": score.optimality_gap,
             "_optimality_gap": score.feasible,
         }
@@ -262,10 +263,10 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
     | 5 | fraction of the episode left |
 
     ## Rewards
-    -P*/P*_ref - λ max(0, 1 - Λ), not below -20. P*_ref is the proven lower bound, so the best return is about -1.045 in
-    the default problem. λ exceeds the multiplier of the constrained optimum, so that the reward's optimum is the
-    constrained optimum itself, globally so in the default problem (docs/optimum.md). Terms: `info["reward/power"]`,
-    `info["reward/lift"]`.
+    -P*/P*_ref - λ max(0, 1 - Λ), not below -20. P*_ref is the proven lower bound (the optimum where the
+    coefficients leave no proof), so the best return is about -1.045 in the default problem. λ exceeds the multiplier of
+    the constrained optimum, so that the reward's optimum is the constrained optimum itself, globally so in the default
+    problem (docs/optimum.md). Terms: `info["reward/power"]`, `info["reward/lift"]`.
 
     ## Starting state
     An insect drawn uniformly, or `options={"insect": name}`.
@@ -308,7 +309,7 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
         return observation[0], _first_row(info)
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
-        """One wingbeat, which ends the episode; `info["optimality_gap"]` is None where the insect cannot hover at all.
+        """One wingbeat, which ends the episode; `info["optimality_gap"]` is None where the insect cannot hover.
 
         Args:
             action: shape (n,), finite.

@@ -60,6 +60,6 @@ def test_records_are_single_when_no_part_of_them_has_axes() -> None:
     assert is_single(hawkmoth)
     for part in ("wing", "stroke"):
         record = getattr(hawkmoth, part)
-        for field in vars(record):
+        for field in vars(record).keys() - {"planform", "pitch_axis"}:
             spread = dataclasses.replace(record, **{field: np.full(2, getattr(record, field))})
             assert not is_single(dataclasses.replace(hawkmoth, **{part: spread}))

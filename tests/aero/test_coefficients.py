@@ -39,7 +39,7 @@ def test_revolving_wings_have_the_lift_constants_of_figure_5(
 ) -> None:
     from flapenv import Wing
 
-    edge = Wing(length=aspect_ratio, mean_chord=1.0, r1_hat=0.5).edge_correction
+    edge = Wing(length=aspect_ratio, mean_chord=1.0, r1_hat=0.5).edge_correction("ellipse")
     assert low - 0.005 <= translational_lift_constant(aspect_ratio, edge, k) <= high + 0.005
 
 

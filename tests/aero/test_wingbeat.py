@@ -11,6 +11,7 @@ from hypothesis import given
 
 from flapenv import Stroke, load_insect
 from flapenv.aero.blade_element import blade_element
+from flapenv.aero.force_laws import PlateLaw
 from flapenv.aero.wingbeat import speed_averages, time_nodes
 
 HAWKMOTH = load_insect("hawkmoth")
@@ -20,11 +21,11 @@ AREA_SPEED = 1.225 * HAWKMOTH.wing.area * HAWKMOTH.wing.length**2
 def oracle_averages(stroke: Stroke, steps: int) -> tuple[float, float]:
     """Lift and power averages of the waveform from the converged blade-element oracle."""
     history = blade_element(
-        HAWKMOTH.wing, stroke, 1.0, air_density=1.225, strips=4, steps=steps, spacing="gauss-jacobi"
+        HAWKMOTH.wing, stroke, PlateLaw(constant=1.0), air_density=1.225, strips=4, steps=steps, spacing="gauss"
     )
     speed = stroke.mean_flap_speed
     lift = history.mean_lift / (AREA_SPEED * HAWKMOTH.wing.moment(2) * speed**2)
-    power = history.mean_power / (2 * AREA_SPEED * HAWKMOTH.wing.length * HAWKMOTH.wing.moment(3) * speed**3)
+    power = history.mean_power() / (2 * AREA_SPEED * HAWKMOTH.wing.length * HAWKMOTH.wing.moment(3) * speed**3)
     return lift, power
 
 
