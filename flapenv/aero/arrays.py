@@ -56,6 +56,19 @@ def as_like(reference: Real, *values: np.ndarray) -> tuple[Real, ...]:
     return tuple(value.astype(reference.dtype, copy=False) for value in values)
 
 
+def without_slope(value: Real, where: Real) -> Real:
+    """`value`, taken as a constant by differentiation where the condition holds; NumPy knows no slopes.
+
+    Args:
+        value: an array or a tensor.
+        where: a condition of its shape.
+    """
+    if not is_tensor(value):
+        return value
+    torch: ModuleType = sys.modules["torch"]
+    return torch.where(where, value.detach(), value)
+
+
 def as_numpy(value: Real) -> np.ndarray:
     """A detached float copy or view of `value`, for checks, tables and pictures."""
     if is_tensor(value):

@@ -3,14 +3,20 @@
 It is built on velocities and normals, not on angles, knows nothing of symmetry or exact moments, and is the oracle that
 every faster path is tested against. With V the velocity of a strip through the air, without its spanwise part,
 
-    translational   dF = ½ρ c (|V|² C_L l̂ - C_D |V| V) dr                  (2.4), (2.7), (2.12)
-    rotational      dF = -ρ C_rot c² |V| θ̇ n̂ dr, C_rot = π(0.75 - x̂₀)      (2.13)-(2.15), Ω = θ̇
-    added mass      dF = -(πρc²/4) V̇ₙ n̂ dr, Vₙ at mid-chord                (2.16)
-    inertia         of a flat plate of even surface mass                   `flapenv.aero.inertia`
+    translational     dF = ½ρ c (|V|² C_L l̂ - C_D |V| V) dr                  (2.4), (2.7), (2.12)
+    rotational        dF = -ρ C_rot c² |V| θ̇ n̂ dr, C_rot = π(0.75 - x̂₀)      (2.13)-(2.15), Ω = θ̇
+    added-mass        dF = -(πρc²/4) V̇ₙ n̂ dr, Vₙ = V·n̂                      (2.16)
+    added-mass-pitch  what (2.16) adds if Vₙ is that of mid-chord, Vₙ + ξθ̇, ξ = (½ - x̂₀)c, and acts there
+    inertia           of a flat plate of even surface mass                   `flapenv.aero.inertia`
 
-The first two act on the pitching axis, the third at mid-chord. Muscles hold the wing against all of it: with ξ the
-distance of a force behind the pitching axis, Q_φ = -∫r dF·ê_φ, Q_θ = -∫ξ dF·n̂ and the power is Q_φ φ̇ + Q_θ θ̇, which is
-the work done relative to the body and, for a body at rest, -∫dF·V.
+V is the velocity on the pitching axis, where the first three act. Muscles hold the wing against all of it: with M the
+moment about that axis, Q_φ = -∫r dF·ê_φ, Q_θ = -∫dM and the power is Q_φ φ̇ + Q_θ θ̇, which is the work done relative to
+the body.
+
+The paper says that added mass gives no net force over symmetric half-strokes. That holds on the pitching axis. At
+mid-chord the normal force gains a mean lift ∫(πρc²/4) ξ⟨θ̇² cos θ⟩ dr that is never negative, whatever the phase; in
+potential flow a force along the chord takes it back, which the sharp leading edge of (2.5) does not carry. So it is a
+term of its own.
 """
 
 import math
@@ -29,7 +35,7 @@ from flapenv.aero.wing import Wing
 
 STRIPS, STEPS = 50, 500
 """The paper's resolution (Part II, section 3.3)."""
-TERMS = ("translational", "rotational", "added-mass", "inertia")
+TERMS = ("translational", "rotational", "added-mass", "added-mass-pitch", "inertia")
 """The force terms; the paper's tables hold the first alone."""
 SPACINGS = ("even", "gauss")
 BLOCK = 2**18
@@ -136,7 +142,7 @@ def blade_element(
 
     phase = 2 * math.pi * (np.arange(steps) + 0.5) / steps
     at = Kinematics.of(motion, phase)
-    if getattr(motion, "flap_shape", 0.0) == 1 and {"added-mass", "inertia"} & set(terms):
+    if getattr(motion, "flap_shape", 0.0) == 1 and {"added-mass", "added-mass-pitch", "inertia"} & set(terms):
         raise ValueError(
             "flap_shape = 1 is not allowed with added mass or inertia: a triangle's acceleration is infinite at its "
             "corners; allowed: below 1"
@@ -207,32 +213,33 @@ def _one_wing(
     for rows in np.array_split(np.arange(len(at.flap)), blocks):
         part = Kinematics(**{name: value[rows] for name, value in vars(at).items()})
         flow = _flow(part, cut.radius, body, side)
-        chordwise, normal, lever = _strip_forces(term, cut, flow, law, density)
+        chordwise, normal, moment = _strip_forces(term, cut, flow, law, density)
         along = chordwise * flow.sine - normal * flow.cosine
         upward = chordwise * flow.cosine + normal * flow.sine
-        parts.append((along.sum(axis=1), upward.sum(axis=1), along @ cut.radius, normal @ lever))
+        parts.append((along.sum(axis=1), upward.sum(axis=1), along @ cut.radius, moment.sum(axis=1)))
     return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
 
 
 def _strip_forces(
     term: str, cut: _Strips, flow: _Flow, law: ForceLaw, density: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forces on every strip along ê_c and n̂, shape (n, s) [N], and how far behind the pitching axis they act [m]."""
-    on_axis = np.zeros_like(cut.chord)
+    """Forces on every strip along ê_c and n̂ [N] and moments about the pitching axis [N m], shape (n, s) each."""
+    none = np.zeros((len(flow.along), len(cut.radius)))
     if term == "translational":
         chordwise, normal = law.strip_force(flow.chordwise, flow.normal)
-        return 0.5 * density * cut.area * chordwise, 0.5 * density * cut.area * normal, on_axis  # (2.4)
+        return 0.5 * density * cut.area * chordwise, 0.5 * density * cut.area * normal, none  # (2.4)
     if term == "rotational":
         speed = np.hypot(flow.along, flow.upward)
         circulation = rotational_coefficient(cut.pitch_axis) * flow.pitch_rate * cut.chord  # Γ/c  (2.14)
-        return np.zeros_like(speed), -density * circulation * speed * cut.area, on_axis  # (2.13)
-    normal_rate = (
-        -flow.along_rate * flow.cosine
-        + (flow.along * flow.sine + flow.upward * flow.cosine) * flow.pitch_rate
-        + cut.middle * flow.pitch_acceleration
-    )
+        return none, -density * circulation * speed * cut.area, none  # (2.13)
     mass = math.pi / 4 * density * cut.chord * cut.area
-    return np.zeros_like(normal_rate), -mass * normal_rate, cut.middle  # (2.16)
+    on_axis = -mass * (
+        -flow.along_rate * flow.cosine + (flow.along * flow.sine + flow.upward * flow.cosine) * flow.pitch_rate
+    )
+    if term == "added-mass":
+        return none, on_axis, none  # (2.16)
+    behind = -mass * cut.middle * flow.pitch_acceleration
+    return none, behind, cut.middle * (on_axis + behind)
 
 
 def _inertia(wing: Wing, at: Kinematics) -> TermHistory:

@@ -47,9 +47,10 @@ class ForceLaw(abc.ABC):
 
     def along_nodes(self, reference: Real) -> Self:
         """The same law with an axis appended to its array constants, in the array library of `reference`."""
-        arrays = {name: value for name, value in vars(self).items() if getattr(value, "ndim", 0)}
+        arrays = {name: value for name, value in vars(self).items() if hasattr(value, "ndim")}
         _, *values = as_arrays(*arrays.values(), reference)
-        return dataclasses.replace(self, **{n: value[..., None] for n, value in zip(arrays, values[:-1], strict=True)})
+        spread = (value[..., None] if value.ndim else value for value in values[:-1])
+        return dataclasses.replace(self, **dict(zip(arrays, spread, strict=True)))
 
     def strip_force(self, chordwise: Real, normal: Real) -> tuple[Real, Real]:
         """Force over ½ρ dS of a strip that moves through the air, any way round.
@@ -141,6 +142,11 @@ class BermanWangLaw(ForceLaw):
     def lift(self, sine: Real, cosine: Real) -> Real:
         """C_T sin 2α [-]."""
         return self.constant * (2 * sine * cosine)
+
+    @property
+    def lift_constant(self) -> Real:
+        """C_T [-]."""
+        return self.constant
 
     def plain_drag(self, sine: Real, cosine: Real) -> Real:
         """C_D0 cos² α + C_D90 sin² α [-]."""

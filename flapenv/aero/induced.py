@@ -15,6 +15,9 @@ from flapenv.aero.wing import Wing
 TIP_LOSS_FACTOR = 1.386
 """2 ln 2, Prandtl's tip loss for two blades (Part I)."""
 
+BLOCK = 256
+"""Wings whose equations are solved at once, to bound the memory."""
+
 
 def k_flap(flap_amplitude: Real) -> Real:
     """k_flap = √(90°/φmax), the part of the actuator disc that is not swept [-].
@@ -74,11 +77,12 @@ def k_ind(wing: Wing, *, root_offset: float = 0.0, section_lift_slope: float = 2
         k_ind = 2∫|w|³ r̂ dr̂/(2∫w² r̂ dr̂)^(3/2).
 
     Args:
-        wing: the wing; array fields give an array of factors.
+        wing: a wing of any planform; array fields give an array of factors.
         root_offset: J, distance from the axis to the root over R [-].
         section_lift_slope: a [1/rad].
-        terms: terms of the sine series; 64 are converged to 1e-4 for r̂₁ of 0.42 to 0.57. Beyond it the chord rises
-            ever more steeply at an end and convergence slows (at r̂₁ = 0.35 or 0.65 they are 6 % short).
+        terms: terms of the sine series; 64 are converged to 1e-4 for beta planforms with r̂₁ of 0.42 to 0.57. Beyond it,
+            and for pointed tips, the downwash at an end grows ever more steeply and convergence slows (at r̂₁ = 0.35 or
+            0.65 they are 6 % short).
 
     Returns:
         The factor, of the wing's shape. The defaults hold no fitted constant.
@@ -89,16 +93,28 @@ def k_ind(wing: Wing, *, root_offset: float = 0.0, section_lift_slope: float = 2
     require_real("root_offset", root_offset, 0.0)
     require_real("section_lift_slope", section_lift_slope, 0.0, open_low=True, unit="1/rad")
     require_count("terms", terms)
+    r_hat = (1 - np.cos((np.arange(terms) + 0.5) * math.pi / terms)) / 2
+    relative_chord, aspect_ratio = wing.shape.relative_chord(r_hat), as_numpy(wing.aspect_ratio)
+    shape = np.broadcast_shapes(relative_chord.shape[:-1], aspect_ratio.shape)
+    chords = np.broadcast_to(relative_chord / aspect_ratio[..., None], (*shape, terms)).reshape(-1, terms)
+    factors = [
+        _lifting_line(section_lift_slope / 2 * chords[start : start + BLOCK], root_offset)
+        for start in range(0, len(chords), BLOCK)
+    ]
+    return as_result(np.concatenate(factors).reshape(shape))
+
+
+def _lifting_line(coupling: np.ndarray, root_offset: float) -> np.ndarray:
+    """k_ind of wings with a ĉ/(2AR) at the collocation points ϑ, shape (wings, terms)."""
+    terms = coupling.shape[-1]
     theta = (np.arange(terms) + 0.5) * math.pi / terms
     order = np.arange(1, terms + 1)
     r_hat = (1 - np.cos(theta)) / 2
     sines = np.sin(np.outer(theta, order))
-    relative_chord = wing.chord(r_hat) / as_numpy(wing.mean_chord)[..., None]
-    coupling = section_lift_slope * relative_chord / (2 * as_numpy(wing.aspect_ratio)[..., None])
     matrix = sines * (2 + coupling[..., None] * order / np.sin(theta)[:, None])
     amplitudes = np.linalg.solve(matrix, (coupling * (root_offset + r_hat))[..., None])[..., 0]
     downwash = (amplitudes * order) @ sines.T / np.sin(theta)
     weights = math.pi / terms * np.sin(theta) / 2  # dr̂, midpoint rule in ϑ
     energy = np.sum(np.abs(downwash) ** 3 * r_hat * weights, axis=-1)
     momentum = np.sum(downwash**2 * r_hat * weights, axis=-1)
-    return as_result(2 * energy / (2 * momentum) ** 1.5)
+    return 2 * energy / (2 * momentum) ** 1.5

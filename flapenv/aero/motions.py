@@ -325,6 +325,6 @@ def _require_closed(name: str, first: float, last: float) -> None:
     """Refuse a cycle that does not end where it began."""
     if abs(last - first) > CLOSURE:
         raise ValueError(
-            f"{name} is not periodic: {first:.6g} rad at the start of a cycle, {last:.6g} rad at its end; allowed: a "
-            f"difference up to {CLOSURE:g} rad"
+            f"{name} is not periodic: {first:.6g} rad, and {last:.6g} rad a cycle later; allowed: a difference up to "
+            f"{CLOSURE:g} rad"
         )

@@ -11,7 +11,7 @@ import numpy as np
 
 from flapenv.aero.arrays import Real, as_numpy
 from flapenv.aero.checks import record, require_real
-from flapenv.aero.quadrature import graded_rule
+from flapenv.aero.quadrature import gauss_rule, graded_rule
 
 R1_HAT_LIMIT = 0.929 ** (1 / 0.268)
 """Largest r̂₁ for which Ellington's correlation leaves a spread of area, r̂₂ > r̂₁ (here 0.7597)."""
@@ -222,9 +222,9 @@ class FunctionPlanform:
         return float(np.sum(weights * self.relative_chord(r_hat) ** power * r_hat**order))
 
     def strips(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Nodes crowded to both ends."""
-        r_hat, weights = graded_rule(count)
-        return r_hat, weights * self.relative_chord(r_hat)
+        """Gauss points weighted with the chord: polynomials in r̂ up to 2 count - 1 are exact."""
+        r_hat, weights = graded_rule(max(FUNCTION_NODES, 4 * count))
+        return gauss_rule(r_hat, weights * self.relative_chord(r_hat), count)
 
 
 def half_ellipse(r_hat: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import math
 
-from flapenv.aero.arrays import Real, as_arrays
+from flapenv.aero.arrays import Real, as_arrays, without_slope
 from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS
 
@@ -21,14 +21,15 @@ def flap_waveform(sin_phase: Real, flap_shape: Real) -> Real:
         The flapping angle over its amplitude, in [-1, 1].
     """
     xp, sin_phase, shape = as_arrays(sin_phase, flap_shape)
-    shape = xp.clip(shape, SMALLEST_SHAPE, None)
+    shape = xp.clip(without_slope(shape, shape == 1), SMALLEST_SHAPE, None)
     return xp.asin(shape * sin_phase) / xp.asin(shape)
 
 
 def flap_speed(cos_phase: Real, flap_shape: Real) -> Real:
     """φ̇/(ω φmax) = Cφ cos ωt/(asin(Cφ) √(1 - Cφ² sin² ωt)) [-], the rate of (2.1).
 
-    The root is taken of (1-Cφ)(1+Cφ) + Cφ² cos² ωt, which keeps its digits as Cφ → 1.
+    The root is taken of (1-Cφ)(1+Cφ) + Cφ² cos² ωt, which keeps its digits as Cφ → 1. The derivatives by Cφ of the
+    averages grow without bound there, as (1-Cφ)^(-1/2); at the triangle itself tensors get 0 for theirs.
 
     Args:
         cos_phase: cos ωt [-], any shape.
@@ -38,7 +39,7 @@ def flap_speed(cos_phase: Real, flap_shape: Real) -> Real:
         The flapping rate over ω φmax, ±2/π for the triangle; 0 at its corners.
     """
     xp, cos_phase, shape = as_arrays(cos_phase, flap_shape)
-    shape = xp.clip(shape, SMALLEST_SHAPE, None)
+    shape = xp.clip(without_slope(shape, shape == 1), SMALLEST_SHAPE, None)
     scaled = shape * cos_phase
     root = xp.sqrt(xp.clip((1 - shape) * (1 + shape) + scaled * scaled, 1e-36, None))
     return scaled / (xp.asin(shape) * root)
