@@ -13,7 +13,8 @@ from collections.abc import Callable
 import gymnasium as gym
 import numpy as np
 
-from flapenv import HoverProblem, Stroke, evaluate, load_insect
+from flapenv import HoverProblem, Stroke, Wing, evaluate, load_insect
+from flapenv.aero.induced import k_ind
 from flapenv.case import hover_case
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.performance import hover_averages
@@ -83,6 +84,13 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
     ]
 
 
+def wing_cases() -> list[tuple[str, Callable[[], object], int]]:
+    """What is measured in wings, not wingbeats."""
+    rng = np.random.default_rng(0)
+    many = Wing(length=rng.uniform(2.6, 5.6, ROWS), mean_chord=1.0, r1_hat=rng.uniform(0.45, 0.57, ROWS))
+    return [(f"k_ind of {ROWS} random wings", lambda: k_ind(many), ROWS)]
+
+
 def main() -> None:
     """Measure and print."""
     rates = [(name, rate(work, wingbeats)) for name, work, wingbeats in cases()]
@@ -92,6 +100,8 @@ def main() -> None:
         (name, f"{value:,.0f}", f"{value / baseline_rate:,.1f}", f"{value / oracle_rate:,.1f}") for name, value in rates
     ]
     print(text_table(rows))
+    for name, work, wings in wing_cases():
+        print(f"{name}: {wings / rate(work, wings):.2f} s")
     print(f"{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
 
 

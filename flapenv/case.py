@@ -119,7 +119,10 @@ def induced_power_factor(case: HoverCase, model: HoverModel, flap_speed: Real, f
 
 
 def force_law(case: HoverCase, model: HoverModel, flap_speed: Real, flap_amplitude: Real) -> ForceLaw:
-    """C_L and C_D of a stroke as the model has them; arguments as in `induced_power_factor`."""
+    """C_L and C_D of a stroke as the model has them, by default (2.11) and (2.12).
+
+    Arguments as in `induced_power_factor`.
+    """
     drag, name = model.profile_drag, model.coefficients
     if name == "extended-lifting-line":
         slope = extended_lift_curve_slope(case.aspect_ratio, model.section_lift_slope)

@@ -49,7 +49,10 @@ def extended_lift_curve_slope(aspect_ratio: Real, section_lift_slope: Real = SEC
 def translational_lift_constant(
     aspect_ratio: Real, edge_correction: Real, k: Real, section_lift_slope: Real = SECTION_LIFT_SLOPE
 ) -> Real:
-    """C_T = C_Lα/2 [-]  (2.9); arguments as in `lift_curve_slope`."""
+    """C_T = C_Lα/2 [-]  (2.9), for which (2.7) has the slope C_Lα at small α  (2.8).
+
+    Arguments as in `lift_curve_slope`.
+    """
     return lift_curve_slope(aspect_ratio, edge_correction, k, section_lift_slope) / 2  # (2.9)
 
 

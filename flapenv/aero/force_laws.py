@@ -53,7 +53,7 @@ class ForceLaw(abc.ABC):
         return dataclasses.replace(self, **dict(zip(arrays, spread, strict=True)))
 
     def strip_force(self, chordwise: Real, normal: Real) -> tuple[Real, Real]:
-        """Force over ½ρ dS of a strip that moves through the air, any way round.
+        """Force over ½ρ dS of a strip that moves through the air, any way round  (2.4).
 
             dF = ½ρ dS (|V|² C_L l̂ - C_D |V| V),  l̂ ⊥ V, on the side of the normal force
 
@@ -75,7 +75,9 @@ class ForceLaw(abc.ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class PlateLaw(ForceLaw):
-    """C_L = C_T sin 2α, C_D = 2 C_T sin² α: a force normal to the chord  (2.7), (2.12).
+    """C_N = 2 C_T sin α, normal to the chord: C_L = C_N cos α = C_T sin 2α, C_D = C_N sin α  (2.5)-(2.7), (2.12).
+
+    The force is normal because the leading edge carries no suction: (2.5) and (2.6) in one.
 
     Attributes:
         constant: C_T [-].

@@ -39,7 +39,7 @@ def test_k_ind_is_converged_in_terms() -> None:
     [
         (HALF_ELLIPSE, 2e-4),
         (TabulatedPlanform(r_hat=[0, 1], chord=[1, 1]), 1e-3),
-        (TabulatedPlanform(r_hat=[0, 0.6, 1], chord=[1, 1.3, 0.4]), 1e-3),
+        (TabulatedPlanform(r_hat=[0, 0.6, 1], chord=[1, 1.3, 0.4]), 3e-3),
         (FunctionPlanform(function=lambda r_hat: np.arccosh(1 / r_hat)), 1e-4),
     ],
     ids=["half-ellipse", "rectangle", "trapeze", "arcsech"],
@@ -54,7 +54,7 @@ def test_k_ind_of_any_planform_converges_in_terms(planform: object, tolerance: f
 
 
 def test_the_ideal_chord_needs_least_and_part_i_s_anchors_are_met_as_far_as_the_forms_go() -> None:
-    """Part I's abstract: 1.02 for an arcsech chord, 1.07 for a beta wing of r̂₁ = 0.40, at an aspect ratio it leaves out."""
+    """Part I's abstract: 1.02 for an arcsech chord, 1.07 for a beta wing of r̂₁ = 0.40, aspect ratio not given."""
     for aspect_ratio in (3.0, 4.0, 5.0):
         arcsech = Wing(
             length=aspect_ratio, mean_chord=1.0, planform=FunctionPlanform(function=lambda r_hat: np.arccosh(1 / r_hat))
