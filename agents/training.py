@@ -75,7 +75,7 @@ class TrainingConfig:
             "environment": "flapenv/Hover-v0",
             "algorithm": "PPO",
             "seed": self.seed,
-            "insects": [asdict(insect) for insect in insects],
+            "insects": [insect.to_dict() for insect in insects],
             "problem": problem.to_dict(),
             "preset": asdict(preset),
         }
@@ -143,10 +143,11 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         OSError: if it cannot be written.
     """
     preset: PPOPreset = config.preset
+    described = config.to_dict()  # before anything is spent on what cannot be kept
     torch.set_num_threads(preset.threads)
     model, comparison = make_model(config), Comparison(config.insects, config.problem)
     out = open_run_folder(out, f"hover-ppo-seed{config.seed}")
-    write_json(out / CONFIG, {**config.to_dict(), "versions": versions()})
+    write_json(out / CONFIG, {**described, "versions": versions()})
     model.set_logger(configure(str(out / TENSORBOARD), ["tensorboard"]))
     curve = LearningCurve(out, comparison, preset.wingbeats)
     checkpoints = Checkpoints(out, preset.wingbeats)

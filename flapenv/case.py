@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero import induced
-from flapenv.aero.arrays import Real
+from flapenv.aero.arrays import Real, as_arrays
 from flapenv.aero.checks import record
 from flapenv.aero.coefficients import extended_lift_curve_slope, lift_curve_slope, translational_lift_constant
 from flapenv.aero.force_laws import BermanWangLaw, FittedLaw, ForceLaw, PlateLaw, PolhamusLaw, robofly
@@ -27,7 +27,7 @@ class HoverCase:
         lift_scale: ρ c̄ R³ r̂₂²/(m g) [s²/rad²].
         power_scale: ρ c̄ R⁴ r̂₃³/m [W s³/(kg rad³)].
         aspect_ratio: AR of one wing [-].
-        edge_correction: E [-].
+        edge_correction: E; 1 where the coefficients know none [-].
         wing_factor: k_ind k_tip, or k_ind alone where k_tip follows the stroke [-].
         downwash_rate: w₀/R, for k_tip of a stroke [1/s].
         reference_frequency: of the insect's own stroke [Hz].
@@ -90,7 +90,7 @@ def hover_case(insect: Insect, model: HoverModel) -> HoverCase:
         lift_scale=model.air_density * wing.mean_chord * wing.length**3 * wing.moment(2) / weight,
         power_scale=model.air_density * wing.mean_chord * wing.length**4 * wing.moment(3) / mass,
         aspect_ratio=wing.aspect_ratio,
-        edge_correction=wing.edge_correction(model.edge_correction),
+        edge_correction=wing.edge_correction(model.edge_correction) if model.uses_edge_correction else 1.0,
         wing_factor=factors.k_revolving if model.tip_loss == "reference" else factors.k_ind,
         downwash_rate=induced.hover_downwash(wing, weight, model.air_density) / wing.length,
         reference_frequency=insect.stroke.frequency,
@@ -137,8 +137,8 @@ def force_law(case: HoverCase, model: HoverModel, flap_speed: Real, flap_amplitu
     k = induced_power_factor(case, model, flap_speed, flap_amplitude)
     wing = case.aspect_ratio, case.edge_correction, k, model.section_lift_slope
     if name == "polhamus":
-        slope = lift_curve_slope(*wing)
-        return PolhamusLaw(slope=slope, suction=1 - k * slope / (math.pi * case.aspect_ratio), profile_drag=drag)
+        _, slope, k, aspect_ratio = as_arrays(lift_curve_slope(*wing), k, case.aspect_ratio)
+        return PolhamusLaw(slope=slope, suction=1 - k * slope / (math.pi * aspect_ratio), profile_drag=drag)
     return PlateLaw(constant=translational_lift_constant(*wing), profile_drag=drag)
 
 

@@ -1,6 +1,7 @@
 """Insects: mass, wing and own stroke, the eight CFD cases of Tables 1-3, and one's own."""
 
 import csv
+import dataclasses
 import functools
 import math
 from collections.abc import Mapping
@@ -9,6 +10,7 @@ from typing import Any
 
 from flapenv.aero.arrays import Real
 from flapenv.aero.checks import record, require_name, require_real, require_scalar
+from flapenv.aero.planform import FunctionPlanform
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 
@@ -119,6 +121,19 @@ class Insect:
         _part(self, "force_constants", ForceConstants, optional=True)
         for source in ("cfd", "published", "berman_wang"):
             _part(self, source, HoverReference, optional=True)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The insect as JSON keeps it; `Insect(**d)` gives it back.
+
+        Raises:
+            TypeError: for a planform that is a function, which no file can hold.
+        """
+        if isinstance(self.wing.planform, FunctionPlanform):
+            raise TypeError(
+                f"the planform of {self.name} is a function, which cannot be written to a file; allowed there: a beta "
+                "planform or a TabulatedPlanform"
+            )
+        return dataclasses.asdict(self)
 
 
 def _part(insect: Insect, field: str, kind: type, *, optional: bool = False) -> None:

@@ -1,6 +1,7 @@
 """Options of the aerodynamic model: air, coefficients, and what enters the induced power factor."""
 
 import warnings
+from collections.abc import Hashable
 from typing import Any, Literal
 
 import numpy as np
@@ -39,7 +40,8 @@ class HoverModel:
         section_lift_slope: a₂d [1/rad].
         tip_loss: "reference" keeps k_tip of the insect's own stroke, "stroke" computes it anew from each stroke.
         induced: False sets k = 1, the ideal uniform downwash of Fig. 6.
-        coefficients: a name of `COEFFICIENTS`, or a function of α in [0, 90°] [rad] that gives the pair (C_L, C_D).
+        coefficients: a name of `COEFFICIENTS`, or a function of α in [0, 90°] [rad] that gives the pair (C_L, C_D) as
+            NumPy arrays of α's shape; it must take tensors to be used with them.
         profile_drag: C_D0, added to the drag coefficient at every angle [-].
         edge_correction: outline that Jones' E is measured on, "ellipse" or "symmetric"; see `Wing.edge_correction`.
 
@@ -70,11 +72,18 @@ class HoverModel:
             require_name("coefficients", self.coefficients, COEFFICIENTS)
         else:
             checked_coefficients(self.coefficients)
+            if not isinstance(self.coefficients, Hashable):
+                raise TypeError(f"coefficients = {self.coefficients!r} cannot be hashed; allowed: a function")
 
     @property
     def uses_k(self) -> bool:
         """Whether the induced power factor enters the coefficients, and with it φmax <= 90°."""
-        return self.induced and self.coefficients in ("lifting-line", "polhamus")
+        return self.induced and self.uses_edge_correction
+
+    @property
+    def uses_edge_correction(self) -> bool:
+        """Whether Jones' E enters the coefficients."""
+        return self.coefficients in ("lifting-line", "polhamus")
 
     @property
     def is_plate(self) -> bool:

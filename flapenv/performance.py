@@ -67,7 +67,7 @@ def hover_averages(
     )
     speed = 4 * frequency * flap_amplitude
     law = force_law(case, model, speed, flap_amplitude)
-    lift_average, power_average = force_averages(
+    scale, lift_average, power_average = force_averages(
         law,
         flap_shape=flap_shape,
         pitch_amplitude=pitch_amplitude,
@@ -75,11 +75,11 @@ def hover_averages(
         pitch_phase=pitch_phase,
         nodes=nodes,
     )
-    _, speed, lift_scale, power_scale, constant, lift_average, power_average = as_arrays(
-        speed, lift_scale, power_scale, law.lift_constant, lift_average, power_average
+    _, speed, lift_scale, power_scale, scale, lift_average, power_average = as_arrays(
+        speed, lift_scale, power_scale, scale, lift_average, power_average
     )
-    weight_support = lift_scale * constant * speed**2 * lift_average
-    specific_power = 2 * power_scale * constant * speed**3 * power_average
+    weight_support = lift_scale * scale * speed**2 * lift_average
+    specific_power = 2 * power_scale * scale * speed**3 * power_average
     return weight_support, specific_power
 
 
@@ -93,7 +93,8 @@ def evaluate(
     Args:
         insect: the insect or the name of one of `INSECTS`; array fields broadcast against the stroke's.
         stroke: the stroke; the insect's own where None, which is the line of Table 3.
-        tolerance: relative error of the time quadrature; see `time_nodes` for what it means near θmax = 90°.
+        tolerance: relative error of the time quadrature, for coefficients smooth in α (robofly's lift jumps at 90°, a
+            table has corners: some 1e-5); see `time_nodes` for what it means near θmax = 90°.
         **model: options of `HoverModel`.
 
     Returns:
@@ -142,7 +143,8 @@ def yardstick(case: HoverCase, model: HoverModel) -> tuple[Real, Real]:
     """Λ_ref and P*_felt of a wing at a yardstick stroke, two numbers an observer can know without any optimum.
 
     The yardstick beats at the reference frequency with φmax = 60°, constant speed v_ref = 4 f φmax and constant
-    α = 35°: Λ_ref = A_L v_ref² sin 2α, P*_felt = A_P v_ref³, where Λ = A_L⟨v² sin 2α⟩ and P* = A_P⟨v³ sin² α⟩.
+    α = 35°: Λ_ref = A_L v_ref² sin 2α, P*_felt = A_P v_ref³, where Λ = A_L⟨v² sin 2α⟩ and P* = A_P⟨v³ sin² α⟩. Other
+    coefficients put C_L at 35° and C_D at 90° in place of C_T sin 2α and 2 C_T.
 
     Returns:
         Weight support [-] and specific power [W/kg], of the case's shape.
@@ -150,8 +152,7 @@ def yardstick(case: HoverCase, model: HoverModel) -> tuple[Real, Real]:
     amplitude = math.radians(60)
     speed = 4 * case.reference_frequency * amplitude
     law = force_law(case, model, speed, amplitude)
-    constant = law.lift_constant
     return (
         case.lift_scale * law.lift(math.sin(math.radians(35)), math.cos(math.radians(35))) * speed**2,
-        2 * case.power_scale * constant * speed**3,
+        case.power_scale * law.plain_drag(1.0, 0.0) * speed**3,
     )

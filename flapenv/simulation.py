@@ -1,11 +1,12 @@
 """A wingbeat of an insect in full, by the blade element: any motion, every force term, over time."""
 
+import inspect
 from collections.abc import Mapping
 from typing import Any
 
 from flapenv.aero import induced
 from flapenv.aero.blade_element import STEPS, STRIPS, blade_element
-from flapenv.aero.checks import is_single
+from flapenv.aero.checks import allowed, is_single
 from flapenv.aero.history import WingbeatHistory
 from flapenv.aero.motions import Motion
 from flapenv.aero.stroke import Stroke
@@ -13,6 +14,10 @@ from flapenv.case import force_law, hover_case, model_wing
 from flapenv.insects import Insect, as_insect
 from flapenv.model import HoverModel, warn_of_aspect_ratio
 from flapenv.performance import checked
+
+OPTIONS = tuple(name for name, p in inspect.signature(blade_element).parameters.items() if p.kind is p.KEYWORD_ONLY)[1:]
+"""What `simulate` hands to the blade element; the air density is the model's."""
+MOTION_METHODS = tuple(name for name in vars(Motion) if not name.startswith("_"))
 
 
 def simulate(
@@ -41,10 +46,20 @@ def simulate(
     Source: Nabawy & Crowther (2014), Part II, (2.3)-(2.16).
     """
     insect = as_insect(insect)
-    model = HoverModel(**(model or {})) if not isinstance(model, HoverModel) else model
+    if model is None or isinstance(model, Mapping):
+        model = HoverModel(**(model or {}))
+    if not isinstance(model, HoverModel):
+        raise TypeError(f"model = {model!r} is not allowed; allowed: a HoverModel or a dict of its options")
+    for name, value in options.items():
+        if name not in OPTIONS:
+            raise TypeError(f"{name} = {value!r} is not an option of simulate; {allowed(name, OPTIONS)}")
     motion = insect.stroke if motion is None else motion
-    if not callable(getattr(motion, "pitch_acceleration", None)):
-        raise TypeError(f"motion = {motion!r} is not allowed; allowed: a Stroke, SampledMotion, FourierMotion or alike")
+    missing = [name for name in MOTION_METHODS if not hasattr(motion, name)]
+    if isinstance(motion, type) or missing:
+        raise TypeError(
+            f"motion = {motion!r} is not allowed; allowed: a Stroke, SampledMotion, FourierMotion, or an object with "
+            f"{', '.join(MOTION_METHODS)}"
+        )
     if not (is_single(insect) and (not isinstance(motion, Stroke) or is_single(motion))):
         raise TypeError("insect or stroke has array fields; allowed: one insect and one stroke with scalar fields")
     if model.uses_k:

@@ -23,8 +23,10 @@ from flapenv import (
     load_insect,
     optimum,
 )
+from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.case import force_law, hover_case, model_wing
 from flapenv.insects import ForceConstants
+from flapenv.objective import HoverObjective
 from flapenv.simulation import evaluate_by_blade_element
 
 FRUITFLY, HAWKMOTH = load_insect("fruitfly"), load_insect("hawkmoth")
@@ -198,7 +200,7 @@ def test_tensors_go_through_every_named_model_and_keep_their_gradient(coefficien
     fields = {"frequency": [254.0, 200.0], "flap_amplitude": [1.2, 1.3], "pitch_shape": [3.0, 5.0]}
     options = {"coefficients": coefficients, "profile_drag": 0.05}
     arrays = evaluate(FRUITFLY, dataclasses.replace(FRUITFLY.stroke, **fields), **options)
-    for chosen in (("frequency", "flap_amplitude", "pitch_shape"), ("pitch_shape",)):
+    for chosen in (tuple(fields), ("frequency",), ("flap_amplitude",), ("pitch_shape",)):
         tensors = {name: torch.tensor(fields[name], dtype=torch.float64, requires_grad=True) for name in chosen}
         ours = evaluate(FRUITFLY, dataclasses.replace(FRUITFLY.stroke, **{**fields, **tensors}), **options)
         np.testing.assert_allclose(ours.weight_support.detach().numpy(), arrays.weight_support, rtol=1e-12)
@@ -238,3 +240,50 @@ def test_the_law_of_a_batch_has_the_constants_of_its_rows() -> None:
     together = force_law(case, HoverModel(), 100.0, amplitudes).lift_constant
     alone = [force_law(case, HoverModel(), 100.0, a).lift_constant for a in amplitudes]
     np.testing.assert_allclose(together, alone, rtol=1e-14)
+
+
+@pytest.mark.parametrize("coefficients", ["lifting-line", "polhamus", "extended-lifting-line"])
+@pytest.mark.filterwarnings(QUIET)
+def test_wings_of_tensors_go_through(coefficients: str) -> None:
+    length = torch.tensor([0.05, 0.06], dtype=torch.float64, requires_grad=True)
+    options = {"coefficients": coefficients, "profile_drag": 0.1}
+    tensors, arrays = (
+        evaluate(
+            dataclasses.replace(HAWKMOTH, wing=dataclasses.replace(HAWKMOTH.wing, length=value)), **options
+        ).weight_support
+        for value in (length, length.detach().numpy())
+    )
+    np.testing.assert_allclose(tensors.detach().numpy(), arrays, rtol=1e-12)
+
+
+def test_a_wing_that_feathers_flat_all_the_time_lifts_nothing_under_any_model() -> None:
+    flat = Stroke(frequency=254.0, flap_amplitude=1.2, pitch_amplitude=0.0)
+    for coefficients in ("robofly", lambda alpha: (0 * alpha + 1.0, 0 * alpha + 1.0)):
+        assert evaluate(FRUITFLY, flat, coefficients=coefficients).weight_support == 0
+        assert evaluate_by_blade_element(FRUITFLY, flat, coefficients=coefficients)[0] == 0
+
+
+def test_a_force_that_only_drags_costs_power_and_lifts_nothing() -> None:
+    drag = evaluate(FRUITFLY, coefficients=lambda alpha: (0 * alpha, 0 * alpha + 1.0))
+    assert drag.weight_support == 0
+    assert drag.specific_power > 0
+    with pytest.raises(ValueError, match="lift nothing at an angle of attack of 35°"):
+        gym.make(
+            "flapenv/Hover-v0",
+            insect="fruitfly",
+            problem={"model": {"coefficients": lambda alpha: (-np.sin(2 * alpha), 0 * alpha + 1.0)}},
+            include_infeasible=True,
+        )
+
+
+def test_a_measured_polar_serves_optimum_and_environment_in_single_precision() -> None:
+    def polar(alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return np.interp(alpha, [0, 0.8, 1.6], [0, 1.5, 0]), np.interp(alpha, [0, 1.6], [0.1, 3])
+
+    problem = HoverProblem(model={"coefficients": polar})
+    assert optimum("hawkmoth", problem).feasible
+    score = HoverObjective([HAWKMOTH], problem, np.float32)
+    one = {name: np.full(1, getattr(HAWKMOTH.stroke, name), np.float32) for name in STROKE_PARAMETERS}
+    assert score.score(np.zeros(1, int), one).weight_support.dtype == np.float32
+    with pytest.raises(ValueError, match="C_D is zero at every angle"):
+        HoverModel(coefficients=lambda alpha: (np.sin(2 * alpha), 0 * alpha))

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from flapenv import FourierMotion, Insect, SampledMotion, Wing, evaluate, load_insect, simulate
+from flapenv import FourierMotion, Insect, SampledMotion, Stroke, Wing, evaluate, load_insect, simulate
 from flapenv.aero.blade_element import TERMS
 
 FRUITFLY = load_insect("fruitfly")
@@ -71,9 +71,23 @@ def test_the_insects_with_a_known_wing_mass_are_three() -> None:
         ({"motion": dataclasses.replace(FRUITFLY.stroke, flap_amplitude=2.0)}, ValueError, "flap_amplitude .*k_flap"),
         ({"motion": dataclasses.replace(FRUITFLY.stroke, frequency=[1.0, 2.0])}, TypeError, "array fields"),
         ({"model": {"air_desnity": 1.0}}, TypeError, "did you mean 'air_density'"),
+        ({"motion": Stroke}, TypeError, "motion = <class .*Stroke'> is not allowed"),
+        ({"motion": object()}, TypeError, "an object with frequency, flap_amplitude, .*pitch_acceleration"),
+        ({"model": 0}, TypeError, "model = 0 is not allowed; allowed: a HoverModel or a dict"),
+        ({"terms": 3}, ValueError, "terms = 3 is not allowed"),
+        ({"strip": 3}, TypeError, "strip = 3 is not an option of simulate; allowed: terms, .*did you mean 'strips'"),
+        ({"air_density": 1.0}, TypeError, "air_density = 1.0 is not an option of simulate"),
         ({"spacing": "odd"}, ValueError, "spacing = 'odd' is unknown; allowed: even, gauss"),
     ],
 )
 def test_bad_input_is_named(arguments: dict[str, object], kind: type[Exception], said: str) -> None:
     with pytest.raises(kind, match=said):
         simulate(FRUITFLY, **arguments)
+
+
+@pytest.mark.parametrize("sharp", [{"pitch_shape": 200.0}, {"flap_shape": 1 - 1e-9}])
+def test_steps_too_few_for_accelerations_are_warned_of(sharp: dict[str, float]) -> None:
+    stroke = dataclasses.replace(FRUITFLY.stroke, **sharp)
+    with pytest.warns(UserWarning, match="steps = 500 do not resolve the motion"):
+        simulate(FRUITFLY, stroke, terms=["translational", "inertia"])
+    simulate(FRUITFLY, stroke)  # nothing to say where no rates count

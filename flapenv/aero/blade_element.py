@@ -14,12 +14,13 @@ moment about that axis, Q_φ = -∫r dF·ê_φ, Q_θ = -∫dM and the power is Q
 the body.
 
 The paper says that added mass gives no net force over symmetric half-strokes. That holds on the pitching axis. At
-mid-chord the normal force gains a mean lift ∫(πρc²/4) ξ⟨θ̇² cos θ⟩ dr that is never negative, whatever the phase; in
-potential flow a force along the chord takes it back, which the sharp leading edge of (2.5) does not carry. So it is a
-term of its own.
+mid-chord the normal force gains a mean lift ∫(πρc²/4) ξ⟨θ̇² cos θ⟩ dr whatever the phase, positive where mid-chord lies
+behind the axis; in potential flow a force along the chord takes it back, which the sharp leading edge of (2.5) does
+not carry. So it is a term of its own.
 """
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -38,6 +39,10 @@ STRIPS, STEPS = 50, 500
 TERMS = ("translational", "rotational", "added-mass", "added-mass-pitch", "inertia")
 """The force terms; the paper's tables hold the first alone."""
 SPACINGS = ("even", "gauss")
+LARGEST_CHANGE = 0.25
+"""Of the flapping rate or the pitching angle between two instants, that still resolves their derivatives."""
+SMALLEST_TURN = 1e-6
+"""Range of pitching angles below which nothing turns [rad]."""
 BLOCK = 2**18
 """Strips times instants that are computed at once, to bound the memory."""
 
@@ -125,12 +130,15 @@ def blade_element(
         ValueError: for an unknown term or spacing, a number out of range, a wing without mass where inertia is asked
             for, or a triangular stroke where accelerations count.
 
+    Warns:
+        UserWarning: where the steps are too few for the terms of rates and accelerations.
+
     Source: Nabawy & Crowther (2014), Part II, (2.3)-(2.16) and section 3.3.
     """
     require_count("strips", strips)
     require_count("steps", steps)
     require_name("spacing", spacing, SPACINGS)
-    if isinstance(terms, str) or not len(terms):
+    if isinstance(terms, str) or not isinstance(terms, Sequence) or not len(terms):
         raise ValueError(f"terms = {terms!r} is not allowed; allowed: a list of {', '.join(TERMS)}")
     for term in terms:
         require_name("terms", term, TERMS)
@@ -147,6 +155,8 @@ def blade_element(
             "flap_shape = 1 is not allowed with added mass or inertia: a triangle's acceleration is infinite at its "
             "corners; allowed: below 1"
         )
+    if set(terms) - {"translational"}:
+        _warn_unless_resolved(at)
     body = to_stroke_plane(velocity, angle)
     cut = _cut(wing, strips, spacing)
     density = float(air_density)
@@ -157,6 +167,19 @@ def blade_element(
     representative = _flow(at, np.array([math.sqrt(wing.moment(2)) * wing.length]), body, RIGHT)
     alpha = np.arctan2(np.abs(representative.normal), representative.chordwise)[:, 0]  # (2.3)
     return WingbeatHistory(phase=phase, kinematics=at, angle_of_attack=alpha, stroke_plane_angle=angle, terms=found)
+
+
+def _warn_unless_resolved(at: Kinematics) -> None:
+    """Say where rates and accelerations are too sharp for the instants they are taken at."""
+    swing = np.max(np.abs(np.diff(at.flap_rate, append=at.flap_rate[:1]))) / np.max(np.abs(at.flap_rate))
+    turn = np.max(np.abs(np.diff(at.pitch, append=at.pitch[:1]))) / max(np.ptp(at.pitch), SMALLEST_TURN)
+    if max(swing, turn) > LARGEST_CHANGE:
+        warnings.warn(
+            f"steps = {len(at.flap)} do not resolve the motion: between two instants the flapping rate changes by "
+            f"{100 * swing:.0f} % of its largest value, the pitching angle by {100 * turn:.0f} % of its range; terms "
+            "of rates and accelerations need more steps, or a gentler stroke",
+            stacklevel=4,
+        )
 
 
 def _cut(wing: Wing, strips: int, spacing: str) -> _Strips:

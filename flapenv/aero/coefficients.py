@@ -151,7 +151,7 @@ def checked_coefficients(function: object) -> None:
 
     Raises:
         TypeError: if it is not callable, or does not answer with two arrays of alpha's shape.
-        ValueError: for NaN, inf or a negative C_D.
+        ValueError: for NaN, inf, a negative C_D or none at all.
     """
     if not callable(function):
         raise TypeError(f"coefficients = {function!r} are not allowed; allowed: a name, or a function of alpha")
@@ -163,3 +163,5 @@ def checked_coefficients(function: object) -> None:
         checked = require_real(f"coefficients' {name}", value, low)
         if np.shape(checked) != alpha.shape:
             raise TypeError(f"coefficients' {name} has shape {np.shape(checked)} for angles of {alpha.shape}")
+    if not np.any(answer[1]):
+        raise ValueError("coefficients' C_D is zero at every angle; allowed: a force that costs power")

@@ -7,11 +7,13 @@ so that no angle is ever formed where none is needed. Its constants are scalars 
 import abc
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
-from flapenv.aero.arrays import Real, as_arrays, as_result
+import numpy as np
+
+from flapenv.aero.arrays import Real, as_arrays, as_like, as_result, is_tensor
 from flapenv.aero.coefficients import robofly_drag, robofly_lift
 
 SMALLEST_SPEED = 1e-300
@@ -45,12 +47,15 @@ class ForceLaw(abc.ABC):
         """C_T: the lift coefficient at 45°, where sin 2α = 1 [-]."""
         return as_result(self.lift(math.sqrt(0.5), math.sqrt(0.5)))
 
-    def along_nodes(self, reference: Real) -> Self:
-        """The same law with an axis appended to its array constants, in the array library of `reference`."""
-        arrays = {name: value for name, value in vars(self).items() if hasattr(value, "ndim")}
-        _, *values = as_arrays(*arrays.values(), reference)
-        spread = (value[..., None] if value.ndim else value for value in values[:-1])
-        return dataclasses.replace(self, **dict(zip(arrays, spread, strict=True)))
+    @property
+    def constants(self) -> dict[str, Real]:
+        """The numbers that may be arrays, by the names of their fields."""
+        return {name: value for name, value in vars(self).items() if hasattr(value, "ndim")}
+
+    def along_nodes(self, constants: Sequence[Real]) -> Self:
+        """The same law with `constants`, in their order, given an axis to broadcast against nodes."""
+        spread = (value[..., None] if value.ndim else value for value in constants)
+        return dataclasses.replace(self, **dict(zip(self.constants, spread, strict=True)))
 
     def strip_force(self, chordwise: Real, normal: Real) -> tuple[Real, Real]:
         """Force over ½ρ dS of a strip that moves through the air, any way round  (2.4).
@@ -159,6 +164,9 @@ class BermanWangLaw(ForceLaw):
 class FittedLaw(ForceLaw):
     """C_L(α) and C_D(α) as functions of the angle alone, the same for every wing.
 
+    What the function gives is brought to the type of its argument, so that a table of double precision does not slow a
+    computation in single precision. Tensors pass only through a function that takes them.
+
     Attributes:
         function: (C_L, C_D) at α in [0, 90°] [rad], arrays of its shape.
     """
@@ -167,17 +175,18 @@ class FittedLaw(ForceLaw):
 
     def lift(self, sine: Real, cosine: Real) -> Real:
         """C_L [-]."""
-        return self.function(_angle(sine, cosine))[0]
+        return self._value(0, sine, cosine)
 
     def plain_drag(self, sine: Real, cosine: Real) -> Real:
         """C_D [-]."""
-        return self.function(_angle(sine, cosine))[1]
+        return self._value(1, sine, cosine)
 
-
-def _angle(sine: Real, cosine: Real) -> Real:
-    """α_f [rad] of its sine and cosine."""
-    xp, sine, cosine = as_arrays(sine, cosine)
-    return xp.atan2(sine, cosine)
+    def _value(self, which: int, sine: Real, cosine: Real) -> Real:
+        """C_L or C_D in the type of the angle."""
+        xp, sine, cosine = as_arrays(sine, cosine)
+        angle = xp.atan2(sine, cosine)
+        value = self.function(angle)[which]
+        return value if is_tensor(value) else as_like(angle, np.asarray(value))[0]
 
 
 def robofly(alpha: Real) -> tuple[Real, Real]:

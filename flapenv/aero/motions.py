@@ -196,7 +196,7 @@ class SampledMotion(_AngleMotion):
         flap_angle_samples: φ [rad], shape (n,), n >= 4.
         pitch_angle_samples: θ [rad], shape (n,).
         time: fractions of the cycle t/T, rising in [0, 1], shape (n,); even from 0, the end left out, where None. If it
-            runs to 1, the last sample must repeat the first.
+            runs from 0 to 1, the last sample must repeat the first.
 
     Raises:
         TypeError: for columns that are not real numbers of equal length, or too few.
@@ -221,11 +221,17 @@ class SampledMotion(_AngleMotion):
         shapes = ", ".join(f"{name} {column.shape}" for name, column in columns.items())
         if any(column.shape != (count,) for column in columns.values()) or count < 4:
             raise TypeError(f"samples have shapes {shapes}; allowed: columns of equal length, at least four rows")
+        angles = columns["flap_angle_samples"], columns["pitch_angle_samples"]
         if self.time is not None:
             _require_no_gap(columns["time"])
-            if columns["time"][-1] == 1:
-                for name in ("flap_angle_samples", "pitch_angle_samples"):
-                    _require_closed(name, float(columns[name][0]), float(columns[name][-1]))
+            if columns["time"][0] == 0 and columns["time"][-1] == 1:
+                for name, column in zip(columns, angles, strict=False):
+                    _require_closed(name, float(column[0]), float(column[-1]))
+        elif all(abs(column[0] - column[-1]) < CLOSURE for column in angles):
+            raise ValueError(
+                "the last sample repeats the first, which even samples without time must not; allowed: leave it out, "
+                "or give time, from 0 to 1"
+            )
         for name, column in columns.items():
             object.__setattr__(self, name, tuple(column.tolist()))
         _require_flapping(self)
@@ -282,7 +288,7 @@ class SampledMotion(_AngleMotion):
         time = np.arange(len(angles)) / len(angles) if self.time is None else np.asarray(self.time)
         if time[-1] < 1 + time[0]:  # close the cycle where the samples leave its end out
             time, angles = np.append(time, 1 + time[0]), np.concatenate([angles, angles[:1]])
-        angles[-1] = angles[0]
+        angles[-1] = angles[0]  # to the last digit, as a periodic spline wants it
         return CubicSpline(2 * math.pi * time, angles, bc_type="periodic")
 
 
@@ -309,7 +315,8 @@ def _require_flapping(motion: _AngleMotion) -> None:
 
 def _require_no_gap(time: np.ndarray) -> None:
     """Refuse times that do not rise or leave a hole, over the end of the cycle too."""
-    steps = np.diff(np.append(time, 1 + time[0])) if time[-1] < 1 else np.diff(time)
+    whole = time[0] == 0 and time[-1] == 1
+    steps = np.diff(time) if whole else np.diff(np.append(time, 1 + time[0]))
     if np.any(steps <= 0):
         i = int(np.argmax(steps <= 0))
         raise ValueError(f"time[{i + 1}] = {time[(i + 1) % len(time)]:.6g} does not exceed time[{i}]; allowed: rising")

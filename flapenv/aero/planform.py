@@ -10,13 +10,15 @@ from typing import Any, Protocol
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_numpy
-from flapenv.aero.checks import record, require_real
+from flapenv.aero.checks import record, require_flag, require_real
 from flapenv.aero.quadrature import gauss_rule, graded_rule
 
 R1_HAT_LIMIT = 0.929 ** (1 / 0.268)
 """Largest r̂₁ for which Ellington's correlation leaves a spread of area, r̂₂ > r̂₁ (here 0.7597)."""
 FUNCTION_NODES = 256
 """Nodes of the integrals over a planform that is given as a function."""
+LARGEST_GAUSS_RULE = 24
+"""Strips up to which such a planform gets a Gauss rule of its own."""
 
 
 class Planform(Protocol):
@@ -112,11 +114,15 @@ class BetaPlanform:
 
 @record
 class TabulatedPlanform:
-    """A planform measured at points, straight between them.
+    """A planform measured at points, straight between them, and rounded at an end where the chord is zero.
+
+    There the chord runs as the square root of the distance from the end, as it does on wings. A straight last panel
+    would make a pointed tip, for which the lifting line finds a much larger k_ind, however narrow it is.
 
     Attributes:
         r_hat: radii over R, rising from 0 (root) to 1 (tip), at least two [-].
         chord: chords there, >= 0, in any unit: kept relative to their mean [-].
+        rounded: False for a polygon, whose ends of zero chord are pointed.
 
     Raises:
         TypeError: if they are not sequences of real numbers of equal length.
@@ -125,9 +131,11 @@ class TabulatedPlanform:
 
     r_hat: Sequence[float]
     chord: Sequence[float]
+    rounded: bool = True
 
     def __post_init__(self) -> None:
         """Check both columns and bring the chords to mean one."""
+        require_flag("rounded", self.rounded)
         r_hat, chord = (
             np.asarray(require_real(name, getattr(self, name), low)) for name, low in (("r_hat", -np.inf), ("chord", 0))
         )
@@ -145,7 +153,10 @@ class TabulatedPlanform:
                 f"r_hat runs from {r_hat[0]:.6g} to {r_hat[-1]:.6g} and does not cover the span; allowed: from 0 "
                 "(root) to 1 (tip), with a chord at both"
             )
-        area = float(np.trapezoid(chord, r_hat))
+        with np.errstate(over="ignore"):
+            area = self._area(r_hat, chord)
+        if not math.isfinite(area):
+            raise ValueError(f"chord up to {np.max(chord):.6g} has no finite area; allowed: smaller numbers")
         if area <= 0:
             raise ValueError("chord is zero everywhere; allowed: a planform with area")
         object.__setattr__(self, "r_hat", tuple(r_hat.tolist()))
@@ -159,11 +170,35 @@ class TabulatedPlanform:
 
     def relative_chord(self, r_hat: Real) -> np.ndarray:
         """ĉ at radii of any shape [-]."""
-        return np.interp(as_numpy(r_hat), self.r_hat, self.chord)
+        radii = as_numpy(r_hat)
+        chord = np.interp(radii, self.r_hat, self.chord)
+        if self._round_root:
+            chord = np.where(radii < self.r_hat[1], self.chord[1] * np.sqrt(radii / self.r_hat[1]), chord)
+        if self._round_tip:
+            last = self.r_hat[-2]
+            chord = np.where(radii > last, self.chord[-2] * np.sqrt(np.maximum(1 - radii, 0) / (1 - last)), chord)
+        return chord
+
+    @property
+    def _round_root(self) -> bool:
+        return self.rounded and self.chord[0] == 0
+
+    @property
+    def _round_tip(self) -> bool:
+        return self.rounded and self.chord[-1] == 0
+
+    def _area(self, r_hat: np.ndarray, chord: np.ndarray) -> float:
+        """∫ chord dr̂ before the chords are scaled: trapezes, and 2/3 of the rectangle under a rounded end."""
+        panels = np.diff(r_hat) * (chord[1:] + chord[:-1]) / 2
+        if self.rounded and chord[0] == 0:
+            panels[0] *= 4 / 3
+        if self.rounded and chord[-1] == 0:
+            panels[-1] *= 4 / 3
+        return float(np.sum(panels))
 
     def moment(self, order: int, power: int = 1) -> float:
         """∫ĉ^power r̂^order dr̂, exactly [-]."""
-        r_hat, area = self._panels((order + power) // 2 + 1)
+        r_hat, area = self._panels(order + power + 1)
         return float(np.sum(area * self.relative_chord(r_hat) ** (power - 1) * r_hat**order))
 
     def strips(self, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -171,17 +206,26 @@ class TabulatedPlanform:
         return self._panels(max(4, math.ceil(count / (len(self.r_hat) - 1))))
 
     def _panels(self, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-        """Radii and areas of `nodes` Gauss-Legendre points in each panel."""
+        """Radii and areas of `nodes` Gauss-Legendre points in each panel, in the root of the distance where rounded."""
         x, weights = np.polynomial.legendre.leggauss(nodes)
+        x, weights = (x + 1) / 2, weights / 2
         edges = np.array(self.r_hat)
         width = np.diff(edges)[:, None]
-        r_hat = (edges[:-1, None] + width * (x + 1) / 2).ravel()
-        return r_hat, self.relative_chord(r_hat) * (width * weights / 2).ravel()
+        place, share = np.tile(x, (len(width), 1)), np.tile(weights, (len(width), 1))
+        if self._round_root:
+            place[0], share[0] = x**2, 2 * x * weights
+        if self._round_tip:
+            place[-1], share[-1] = 1 - x**2, 2 * x * weights
+        r_hat = (edges[:-1, None] + width * place).ravel()
+        return r_hat, self.relative_chord(r_hat) * (width * share).ravel()
 
 
 @record
 class FunctionPlanform:
     """A planform given as a function; it may rise or fall steeply at either end but should be smooth between.
+
+    It is tried at `FUNCTION_NODES` radii; what lies between them goes unseen. Wings that are to be pickled need a
+    function with a name in a module, wings that are written to files a `TabulatedPlanform`.
 
     Attributes:
         function: chord at radii over R, an array in (0, 1) in and one of the same shape out, in any unit.
@@ -222,8 +266,11 @@ class FunctionPlanform:
         return float(np.sum(weights * self.relative_chord(r_hat) ** power * r_hat**order))
 
     def strips(self, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Gauss points weighted with the chord: polynomials in r̂ up to 2 count - 1 are exact."""
-        r_hat, weights = graded_rule(max(FUNCTION_NODES, 4 * count))
+        """Gauss points weighted with the chord, exact up to degree 2 count - 1; many are crowded to both ends."""
+        if count > LARGEST_GAUSS_RULE:
+            r_hat, weights = graded_rule(count)
+            return r_hat, weights * self.relative_chord(r_hat)
+        r_hat, weights = graded_rule(FUNCTION_NODES)
         return gauss_rule(r_hat, weights * self.relative_chord(r_hat), count)
 
 

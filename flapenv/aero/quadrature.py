@@ -40,6 +40,8 @@ def gauss_rule(points: np.ndarray, weights: np.ndarray, count: int) -> tuple[np.
         diagonal[k] = np.sum(weights * points * polynomial**2)
         following = (points - diagonal[k]) * polynomial - beside[k - 1] * before
         beside[k] = math.sqrt(np.sum(weights * following**2))
+        if beside[k] < 1e-12:
+            raise ValueError(f"the weight function has too few points for a rule of {count} nodes; allowed: fewer")
         before, polynomial = polynomial, following / beside[k]
     jacobi = np.diag(diagonal) + np.diag(beside[:-1], 1) + np.diag(beside[:-1], -1)
     nodes, vectors = np.linalg.eigh(jacobi)

@@ -58,23 +58,33 @@ class Wing:
         if self.planform is None:
             set_(self, "r1_hat", BetaPlanform(r1_hat=self.r1_hat).r1_hat)
             return
-        if not hasattr(self.planform, "relative_chord"):
+        if isinstance(self.planform, type) or not hasattr(self.planform, "relative_chord"):
             raise TypeError(f"planform = {self.planform!r} is not allowed; allowed: a planform, or the dict of a table")
         own = self.planform.r1_hat
-        if self.r1_hat is not None and not np.allclose(as_numpy(self.r1_hat), own, rtol=1e-9):
+        if self.r1_hat is not None and not np.allclose(as_numpy(require_real("r1_hat", self.r1_hat)), own, rtol=1e-9):
             raise ValueError(
                 f"r1_hat = {self.r1_hat} is not the planform's; allowed: {own:.6g}, or None to take it from there"
             )
         set_(self, "r1_hat", own)
 
     @classmethod
-    def from_table(cls, radius: Sequence[float], chord: Sequence[float], **fields: Any) -> "Wing":
-        """A wing measured at points, straight between them.
+    def from_table(
+        cls,
+        radius: Sequence[float],
+        chord: Sequence[float],
+        *,
+        rounded: bool = True,
+        mass: float | None = None,
+        pitch_axis: float | None = None,
+    ) -> "Wing":
+        """A wing measured at points, straight between them, and rounded at an end where the chord is zero.
 
         Args:
             radius: from 0 (root) up to the length [m], shape (n,).
             chord: there [m], >= 0, shape (n,).
-            **fields: `mass` and `pitch_axis`.
+            rounded: False for a polygon, whose ends of zero chord are pointed.
+            mass: of one wing [kg].
+            pitch_axis: x̂₀ [chords]; the default of `Wing` where None.
 
         Raises:
             TypeError: for columns that are not real numbers of equal length.
@@ -89,8 +99,13 @@ class Wing:
                 f"radius runs from {r[0]:.6g} to {r[-1]:.6g} m and does not cover the span; allowed: from 0 (root) to "
                 "the length, with a chord at both"
             )
-        shape = TabulatedPlanform(r_hat=(r / r[-1]).tolist(), chord=c.tolist())
-        return cls(length=float(r[-1]), mean_chord=float(np.trapezoid(c, r) / r[-1]), planform=shape, **fields)
+        widest = int(np.argmax(c))
+        relative = c / (c[widest] or 1.0)
+        shape = TabulatedPlanform(r_hat=(r / r[-1]).tolist(), chord=relative.tolist(), rounded=rounded)
+        rest = {} if pitch_axis is None else {"pitch_axis": pitch_axis}
+        return cls(
+            length=float(r[-1]), mean_chord=float(c[widest]) / shape.chord[widest], planform=shape, mass=mass, **rest
+        )
 
     @property
     def shape(self) -> Planform:
@@ -108,7 +123,7 @@ class Wing:
         return self.length / self.mean_chord
 
     def moment(self, order: int) -> Real:
-        """r̂ₙⁿ = ∫₀¹ ĉ r̂ⁿ dr̂, the moment of area of order n, exactly [-].
+        """r̂ₙⁿ = ∫₀¹ ĉ r̂ⁿ dr̂, the moment of area of order n [-]; exact for beta planforms and tables.
 
         Args:
             order: n, a whole number >= 0.
@@ -148,11 +163,11 @@ class Wing:
         points = np.sin(np.linspace(0, math.pi / 2, OUTLINE_POINTS)) ** 2
         if isinstance(self.planform, TabulatedPlanform):
             points = np.union1d(points, self.planform.r_hat)
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             half_chord = self.shape.relative_chord(points) / (2 * as_numpy(self.aspect_ratio)[..., None])
         if not np.all(np.isfinite(half_chord)):
             raise ValueError(
-                f"r1_hat = {self.r1_hat} is not allowed with the symmetric outline: the chord is infinite at the root; "
-                "allowed: r1_hat above 0.38, or the outline 'ellipse'"
+                f"the wing with r1_hat = {self.r1_hat} has no symmetric outline: its chord at an end is not finite; "
+                "allowed: the outline 'ellipse', or another planform (beta: r1_hat above 0.38)"
             )
         return as_result(np.sum(np.hypot(np.diff(points), np.diff(half_chord, axis=-1)), axis=-1))

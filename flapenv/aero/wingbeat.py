@@ -71,13 +71,14 @@ def speed_averages(
     Returns:
         The lift and the power average [-], shape (...).
     """
-    xp, flap_shape, pitch_amplitude, pitch_shape, pitch_phase = as_arrays(
-        flap_shape, pitch_amplitude, pitch_shape, pitch_phase
+    constants = list(law.constants.values()) if law else []
+    xp, flap_shape, pitch_amplitude, pitch_shape, pitch_phase, *constants = as_arrays(
+        flap_shape, pitch_amplitude, pitch_shape, pitch_phase, *constants
     )
+    law = law and law.along_nodes(constants)
     flap_shape, pitch_amplitude, pitch_shape = (
         value[..., None] for value in (flap_shape, pitch_amplitude, pitch_shape)
     )
-    law = law and law.along_nodes(pitch_phase)
     fractions, weights = as_like(pitch_phase, *graded_rule(nodes))
     half_turns = xp.round(pitch_phase / math.pi)
     sense = (1 - 2 * (half_turns % 2))[..., None]  # sign of θ after its reversal
@@ -93,7 +94,7 @@ def speed_averages(
             lift = lift + share * sign[..., 0] * ((dynamic * sine * cosine) @ (2 * weights))
             power = power + share * ((dynamic * speed * cosine * cosine) @ weights)
         else:
-            lift = lift + share * sign[..., 0] * ((dynamic * law.lift(cosine, sine)) @ weights)
+            lift = lift + share * sign[..., 0] * ((dynamic * law.lift(cosine, sine) * xp.sign(sine)) @ weights)
             power = power + share * ((dynamic * speed * law.drag(cosine, sine)) @ weights)
     return lift, power
 
@@ -106,10 +107,10 @@ def force_averages(
     pitch_shape: Real,
     pitch_phase: Real,
     nodes: int,
-) -> tuple[Real, Real]:
-    """⟨v² C_L⟩/(C_T v̄²) and ⟨v³ C_D⟩/(2 C_T v̄³) of any force law, C_T its `lift_constant`.
+) -> tuple[Real, Real, Real]:
+    """A scale, and ⟨v² C_L⟩/v̄² and ⟨v³ C_D⟩/(2 v̄³) over it, of any force law.
 
-    They are `speed_averages` where the force is normal to the chord, which needs no coefficient at the nodes.
+    The scale is C_T where the force is normal to the chord, which needs no coefficient at the nodes, and 1 elsewhere.
 
     Args:
         law: the force law; its constants broadcast with the rest, shape (...).
@@ -120,10 +121,10 @@ def force_averages(
         nodes: per piece of the half-stroke, from `time_nodes`.
 
     Returns:
-        The lift and the power average [-], shape (...).
+        The scale, the lift and the power average [-], shape (...).
     """
     if isinstance(law, PlateLaw) and law.profile_drag == 0:
-        return speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, nodes=nodes)
+        averages = speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, nodes=nodes)
+        return law.constant, *averages
     lift, power = speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, nodes=nodes, law=law)
-    _, lift, power, constant = as_arrays(lift, power, law.lift_constant)
-    return lift / constant, power / (2 * constant)
+    return 1.0, lift, power / 2

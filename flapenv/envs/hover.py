@@ -120,6 +120,8 @@ class HoverVectorEnv(BatchEnv):
 
         cases = self.objective.cases
         weight_support, self._felt_power = yardstick(cases, self.problem.model)
+        if not np.all(weight_support > 0):
+            raise ValueError("coefficients lift nothing at an angle of attack of 35°; allowed: a lift to fly on")
         r1_hat = np.array([one.wing.r1_hat for one in self.insects])
         self._features = np.stack(
             [cases.aspect_ratio - 4, (r1_hat - 0.51) / 0.04, np.log(weight_support)], axis=-1

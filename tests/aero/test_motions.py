@@ -88,6 +88,23 @@ def test_samples_that_begin_late_are_closed_over_the_end_of_the_cycle() -> None:
     np.testing.assert_allclose(late.flap_angle(PHASE), SMOOTH.flap_angle(PHASE), atol=1e-6)
 
 
+def test_samples_from_just_after_the_start_to_the_end_of_the_cycle_are_whole() -> None:
+    time = np.arange(1, 201) / 200
+    motion = SampledMotion(
+        frequency=30.0,
+        flap_angle_samples=SMOOTH.flap_angle(2 * math.pi * time),
+        pitch_angle_samples=SMOOTH.pitch_angle(2 * math.pi * time),
+        time=time,
+    )
+    np.testing.assert_allclose(motion.flap_angle(PHASE), SMOOTH.flap_angle(PHASE), atol=1e-6)
+
+
+def test_mean_speed_counts_every_reversal() -> None:
+    triple = FourierMotion(frequency=2.0, flap_sines=[0.0, 0.0, 0.5])
+    assert triple.mean_flap_speed == pytest.approx(3 * 4 * 2.0 * 0.5, rel=1e-5)
+    assert triple.flap_amplitude == pytest.approx(0.5, rel=1e-5)
+
+
 WAVE = np.sin(2 * math.pi * np.arange(20) / 20).tolist()
 
 
@@ -107,6 +124,12 @@ WAVE = np.sin(2 * math.pi * np.arange(20) / 20).tolist()
             "flap_angle_samples is not periodic: 0 rad, and -0.309017 rad a cycle",
         ),
         ({"time": np.linspace(0, 1.2, 20)}, ValueError, r"time\[16\] = 1.01"),
+        ({"time": np.linspace(0.5, 1, 20)}, ValueError, "gap of 0.5 cycles after 1, 19.0 times"),
+        (
+            {"pitch_angle_samples": [*WAVE[1:], WAVE[1]], "flap_angle_samples": [0.0, *WAVE[2:], 0.0]},
+            ValueError,
+            "repeats the first",
+        ),
         ({"tiem": WAVE}, TypeError, "did you mean 'time'"),
     ],
 )

@@ -16,7 +16,7 @@ from flapenv import FunctionPlanform, Insect, TabulatedPlanform, Wing, evaluate
 from flapenv.aero.induced import k_ind
 from flapenv.aero.planform import HALF_ELLIPSE, BetaPlanform
 
-TRIANGLE = TabulatedPlanform(r_hat=[0, 1], chord=[3.0, 0.0])
+TRIANGLE = TabulatedPlanform(r_hat=[0, 1], chord=[3.0, 0.0], rounded=False)
 """Straight from the root chord to a pointed tip."""
 
 
@@ -45,6 +45,28 @@ def test_the_half_ellipse_has_its_moments() -> None:
     assert HALF_ELLIPSE.moment(2) == pytest.approx(1 / 4, rel=1e-13)
     assert HALF_ELLIPSE.moment(3) == pytest.approx(8 / (15 * math.pi), rel=1e-13)
     assert HALF_ELLIPSE.relative_chord(np.array([0.0])) == pytest.approx(4 / math.pi)  # c(0) = 4c̄/π
+
+
+def test_an_end_of_zero_chord_is_rounded_unless_the_table_is_a_polygon() -> None:
+    half_parabola = TabulatedPlanform(r_hat=[0, 1], chord=[1.0, 0.0])  # ĉ = 1.5 √(1-r̂)
+    np.testing.assert_allclose(half_parabola.relative_chord(np.array([0, 0.75, 1.0])), [1.5, 0.75, 0], atol=1e-12)
+    assert half_parabola.r1_hat == pytest.approx(2 / 5)
+    assert half_parabola.moment(0, power=2) == pytest.approx(9 / 8)
+    both = TabulatedPlanform(r_hat=[0, 0.4, 1], chord=[0.0, 1.0, 0.0])
+    assert both.moment(0) == pytest.approx(1)
+    assert both.relative_chord(np.array([0.1]))[0] == pytest.approx(both.chord[1] / 2)
+
+
+@pytest.mark.parametrize("r1_hat", [0.46, 0.50, 0.55])
+def test_a_few_points_of_a_wing_give_its_induced_power_factor(r1_hat: float) -> None:
+    """Eleven even points: within 0.01, where a pointed tip would add 0.7 and more."""
+    beta = Wing(length=0.05, mean_chord=0.015, r1_hat=r1_hat)
+    r_hat = np.linspace(0, 1, 11)
+    wing = Wing.from_table(r_hat * 0.05, beta.chord(r_hat))
+    assert k_ind(wing) == pytest.approx(k_ind(beta), abs=0.01)
+    assert wing.area == pytest.approx(beta.area, rel=0.02)
+    with pytest.warns(UserWarning, match=r"k_ind = \d\.\d+ is not converged: 64 terms change it by .*rounded table"):
+        assert k_ind(Wing.from_table(r_hat * 0.05, beta.chord(r_hat), rounded=False)) > k_ind(beta) + 0.5
 
 
 @given(tables())
@@ -193,3 +215,31 @@ def test_a_wing_needs_a_shape_and_one_that_is_a_planform() -> None:
         Wing(length=1, mean_chord=1, r1_hat=0.5, mass=0)
     with pytest.raises(ValueError, match=r"pitch_axis = 1.5 .*\[0, 1\]"):
         Wing(length=1, mean_chord=1, r1_hat=0.5, pitch_axis=1.5)
+
+
+def test_what_is_no_planform_instance_or_has_no_outline_is_named() -> None:
+    with pytest.raises(TypeError, match=r"planform = <class .*TabulatedPlanform'> is not allowed"):
+        Wing(length=1, mean_chord=1, planform=TabulatedPlanform)
+    with pytest.raises(TypeError, match="r1_hat = 'x' is not a real number"):
+        Wing(length=1, mean_chord=1, r1_hat="x", planform=HALF_ELLIPSE)
+    undefined = Wing(length=3, mean_chord=1, planform=FunctionPlanform(function=lambda r: np.sin(np.pi * r) / r))
+    with pytest.raises(ValueError, match="no symmetric outline: its chord at an end is not finite"):
+        undefined.edge_correction("symmetric")
+    with pytest.raises(ValueError, match=r"no finite area; allowed: smaller numbers|zero everywhere"):
+        TabulatedPlanform(r_hat=[0, 0.5, 1], chord=[1.7e308] * 3)
+
+
+def test_many_strips_of_an_uneven_planform_stay_finite() -> None:
+    half = FunctionPlanform(function=lambda r: np.where(r < 0.5, 1.0, 0.0))
+    for count in (8, 300):
+        r_hat, area = half.strips(count)
+        assert np.all(np.isfinite(r_hat))
+        assert np.sum(area) == pytest.approx(1, rel=1e-2)
+
+
+def test_a_wing_that_is_a_class_or_a_word_has_no_induced_power_factor() -> None:
+    with pytest.raises(TypeError, match="wing = 'x' is not allowed; allowed: a Wing"):
+        k_ind("x")
+    spike = Wing(length=3, mean_chord=1, planform=TabulatedPlanform(r_hat=[0, 0.9, 1], chord=[0, 0, 1]))
+    with pytest.raises(ValueError, match="terms = 1 are too few"):
+        k_ind(spike, terms=1)

@@ -14,7 +14,8 @@ from stable_baselines3 import PPO
 
 from agents.presets import PPOPreset
 from agents.training import TrainingConfig, draw_pictures, make_model, summary, train
-from flapenv import INSECTS, Stroke, evaluate
+from flapenv import INSECTS, Insect, Stroke, Wing, evaluate
+from flapenv.aero.planform import HALF_ELLIPSE
 
 ROOT = Path(__file__).parents[2]
 TINY = PPOPreset(wingbeats=4096, rows=512, minibatch=128, epochs=1)
@@ -193,3 +194,27 @@ def test_the_default_command_learns_to_hover_at_the_proven_optimum(tmp_path: Pat
     assert results["mean_gap_percent"] <= 1
     assert max(entry["gap_percent"] for entry in entries) <= 2
     assert min(entry["weight_support"] for entry in entries) >= 0.998
+
+
+def test_what_no_file_can_hold_is_refused_before_anything_is_made(tmp_path: Path) -> None:
+    smooth = Insect(
+        name="smooth",
+        mass=1e-4,
+        wing=Wing(length=0.015, mean_chord=0.004, planform=HALF_ELLIPSE),
+        stroke=Stroke(frequency=120.0, flap_amplitude=1.0, pitch_amplitude=1.0),
+    )
+    with pytest.raises(TypeError, match="the planform of smooth is a function, which cannot be written to a file"):
+        train(TrainingConfig(insects=[smooth], preset=TINY), tmp_path / "run", progress=False)
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_measured_wing_is_trained_on_and_comes_back_from_its_config(tmp_path: Path) -> None:
+    measured = Insect(
+        name="measured",
+        mass=1e-4,
+        wing=Wing.from_table([0, 0.004, 0.010, 0.015], [0.003, 0.005, 0.0045, 0.001], mass=4e-7),
+        stroke=Stroke(frequency=120.0, flap_amplitude=1.0, pitch_amplitude=1.0),
+    )
+    train(TrainingConfig(insects=[measured], preset=TINY), tmp_path, progress=False)
+    config = json.loads((tmp_path / "config.json").read_text(encoding="utf-8"))
+    assert TrainingConfig(insects=config["insects"]).insects == (measured,)
