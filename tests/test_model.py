@@ -263,6 +263,7 @@ def test_a_wing_that_feathers_flat_all_the_time_lifts_nothing_under_any_model() 
         assert evaluate_by_blade_element(FRUITFLY, flat, coefficients=coefficients)[0] == 0
 
 
+@pytest.mark.filterwarnings("ignore:no stroke of the box carries the weight:UserWarning")
 def test_a_force_that_only_drags_costs_power_and_lifts_nothing() -> None:
     drag = evaluate(FRUITFLY, coefficients=lambda alpha: (0 * alpha, 0 * alpha + 1.0))
     assert drag.weight_support == 0

@@ -106,6 +106,7 @@ def test_mean_speed_counts_every_reversal() -> None:
 
 
 WAVE = np.sin(2 * math.pi * np.arange(20) / 20).tolist()
+CLOSED = np.sin(np.linspace(0, 2 * math.pi, 20)).tolist()
 
 
 @pytest.mark.parametrize(
@@ -126,9 +127,9 @@ WAVE = np.sin(2 * math.pi * np.arange(20) / 20).tolist()
         ({"time": np.linspace(0, 1.2, 20)}, ValueError, r"time\[16\] = 1.01"),
         ({"time": np.linspace(0.5, 1, 20)}, ValueError, "gap of 0.5 cycles after 1, 19.0 times"),
         (
-            {"pitch_angle_samples": [*WAVE[1:], WAVE[1]], "flap_angle_samples": [0.0, *WAVE[2:], 0.0]},
+            {"pitch_angle_samples": CLOSED, "flap_angle_samples": CLOSED},
             ValueError,
-            "repeats the first",
+            "the last sample repeats the first",
         ),
         ({"tiem": WAVE}, TypeError, "did you mean 'time'"),
     ],
