@@ -15,6 +15,7 @@ import numpy as np
 
 from flapenv import HoverProblem, Stroke, Wing, evaluate, load_insect
 from flapenv.aero.induced import k_ind
+from flapenv.aero.parameters import StrokeReference
 from flapenv.case import hover_case
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.performance import hover_averages
@@ -55,7 +56,7 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
     """What is measured: a name, the work and how many wingbeats it is."""
     hawkmoth, problem = load_insect("hawkmoth"), HoverProblem()
     points = np.random.default_rng(0).uniform(-1, 1, (ROWS, 6)).astype(np.float32)
-    values, _ = StrokeCoordinates(problem.box).decode(points, 26.3)
+    values, _ = StrokeCoordinates(problem.box).decode(points, StrokeReference(26.3, 1.0))
     double = {name: value.astype(float) for name, value in values.items()}
     nodes = problem.box.time_nodes(tolerance=1e-6)
     case = hover_case(hawkmoth, problem.model).rows(np.newaxis, np.float32)

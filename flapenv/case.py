@@ -11,6 +11,8 @@ from flapenv.aero.arrays import Real, as_arrays
 from flapenv.aero.checks import record
 from flapenv.aero.coefficients import extended_lift_curve_slope, lift_curve_slope, translational_lift_constant
 from flapenv.aero.force_laws import BermanWangLaw, FittedLaw, ForceLaw, PlateLaw, PolhamusLaw, robofly
+from flapenv.aero.inertia import wing_inertia
+from flapenv.aero.parameters import StrokeReference
 from flapenv.aero.planform import HALF_ELLIPSE
 from flapenv.aero.wing import Wing
 from flapenv.insects import Insect, WingFactors
@@ -31,7 +33,10 @@ class HoverCase:
         wing_factor: k_ind k_tip, or k_ind alone where k_tip follows the stroke [-].
         downwash_rate: w₀/R, for k_tip of a stroke [1/s].
         reference_frequency: of the insect's own stroke [Hz].
+        reference_amplitude: φmax of the insect's own stroke [rad].
         force_constants: C_T, C_D0 and C_D90 of the insect along the last axis; empty where they do not count [-].
+        inertia: of both wings over the body mass, I_r, I_rξ, I_ξ and the added mass' M along the last axis, as
+            `flapenv.aero.paid_power` takes them [m²]; empty where they do not count.
     """
 
     lift_scale: Real
@@ -41,7 +46,14 @@ class HoverCase:
     wing_factor: Real
     downwash_rate: Real
     reference_frequency: Real
+    reference_amplitude: Real
     force_constants: np.ndarray
+    inertia: np.ndarray
+
+    @property
+    def reference(self) -> StrokeReference:
+        """What boxes may be relative to."""
+        return StrokeReference(self.reference_frequency, self.reference_amplitude)
 
     def rows(self, index: Any, dtype: Any = float) -> "HoverCase":
         """The case with every field indexed by `index` and cast, to serve a batch of rows."""
@@ -94,8 +106,23 @@ def hover_case(insect: Insect, model: HoverModel) -> HoverCase:
         wing_factor=factors.k_revolving if model.tip_loss == "reference" else factors.k_ind,
         downwash_rate=induced.hover_downwash(wing, weight, model.air_density) / wing.length,
         reference_frequency=insect.stroke.frequency,
+        reference_amplitude=insect.stroke.flap_amplitude,
         force_constants=constants,
+        inertia=_inertia(insect, wing, model) if model.accounting == "positive" else np.zeros(0),
     )
+
+
+def _inertia(insect: Insect, wing: Wing, model: HoverModel) -> np.ndarray:
+    """What accelerating both wings and the air around them takes, over the body mass, shape (..., 4) [m²]."""
+    if wing.mass is None:
+        raise ValueError(
+            f"accounting = 'positive' needs the wing mass of {insect.name}; allowed: Wing(..., mass=...) [kg] of one "
+            "wing, or fruitfly, bumblebee, hawkmoth"
+        )
+    moments = wing_inertia(wing)
+    added = math.pi / 4 * model.air_density * wing.mean_chord**2 * wing.length**3 * wing.shape.moment(2, 2)
+    parts = moments.radius, moments.product, moments.chord, added
+    return np.stack(np.broadcast_arrays(*(2 * part / insect.mass for part in parts)), axis=-1)
 
 
 def stack_cases(cases: list[HoverCase]) -> HoverCase:

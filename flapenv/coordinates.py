@@ -6,7 +6,7 @@ import numpy as np
 
 from flapenv.aero.arrays import Real
 from flapenv.aero.checks import require_name
-from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.problem import StrokeBox
 
 Scaling = Literal["tip-speed", "log", "plain"]
@@ -46,14 +46,12 @@ class StrokeCoordinates:
         """What each axis is; "tip_speed" stands for q = f φmax."""
         return tuple("tip_speed" if n == "frequency" and self._uses_tip_speed else n for n in self.names)
 
-    def decode(
-        self, points: np.ndarray, reference_frequency: np.ndarray | float
-    ) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    def decode(self, points: np.ndarray, reference: StrokeReference) -> tuple[dict[str, np.ndarray], np.ndarray]:
         """Strokes at points of the cube; a point outside is moved to its nearest face.
 
         Args:
             points: shape (..., n), float32 or float64, finite.
-            reference_frequency: scalar or shape (...) [Hz].
+            reference: the own strokes that the box may be relative to, scalars or shape (...).
 
         Returns:
             The stroke's fields by name, each of shape (...) and the points' type [SI units], and where anything
@@ -64,7 +62,7 @@ class StrokeCoordinates:
         shape, dtype = points.shape[:-1], points.dtype
         values: dict[str, np.ndarray] = {}
         for name in STROKE_PARAMETERS:
-            low, high = _inside(*self.box.bounds(name, reference_frequency), dtype)
+            low, high = _inside(*self.box.bounds(name, reference), dtype)
             if name not in self.names:
                 values[name] = np.broadcast_to(low, shape)
                 continue
@@ -75,8 +73,8 @@ class StrokeCoordinates:
             values[name] = np.clip(_between(fraction, low, high, *self._scale(name)), low, high)
         if self._uses_tip_speed:
             amplitude = values["flap_amplitude"]
-            low, high = _inside(*self.box.bounds("frequency", reference_frequency), dtype)
-            first, last = (dtype.type(bound) for bound in self.box.flap_amplitude)
+            low, high = _inside(*self.box.bounds("frequency", reference), dtype)
+            first, last = (np.asarray(bound, dtype) for bound in self.box.bounds("flap_amplitude", reference))
             tip_speed = _between(values["frequency"], low * first, high * last, "log")
             frequency = tip_speed / amplitude
             values["frequency"] = np.clip(frequency, low, high)
@@ -84,22 +82,22 @@ class StrokeCoordinates:
             clipped |= np.abs(values["frequency"] - frequency) > slack * frequency
         return values, clipped
 
-    def encode(self, values: dict[str, np.ndarray], reference_frequency: np.ndarray | float) -> np.ndarray:
+    def encode(self, values: dict[str, np.ndarray], reference: StrokeReference) -> np.ndarray:
         """Points of the cube for strokes, the inverse of `decode` inside the box.
 
         Args:
             values: the stroke's fields by name, each of shape (...) [SI units].
-            reference_frequency: scalar or shape (...) [Hz].
+            reference: the own strokes that the box may be relative to, scalars or shape (...).
 
         Returns:
             Points, shape (..., n), clipped to the cube.
         """
         axes = []
         for name in self.names:
-            low, high = self.box.bounds(name, reference_frequency)
+            low, high = self.box.bounds(name, reference)
             value = values[name]
             if name == "frequency" and self._uses_tip_speed:
-                first, last = self.box.flap_amplitude
+                first, last = self.box.bounds("flap_amplitude", reference)
                 value, low, high = value * values["flap_amplitude"], low * first, high * last
             axes.append(np.clip(2 * _fraction(value, low, high, *self._scale(name)) - 1, -1, 1))
         return np.stack(np.broadcast_arrays(*axes), axis=-1) if axes else np.zeros((0,))

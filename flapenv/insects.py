@@ -10,6 +10,7 @@ from typing import Any
 
 from flapenv.aero.arrays import Real
 from flapenv.aero.checks import record, require_name, require_real, require_scalar
+from flapenv.aero.parameters import StrokeReference
 from flapenv.aero.planform import FunctionPlanform
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
@@ -121,6 +122,11 @@ class Insect:
         _part(self, "force_constants", ForceConstants, optional=True)
         for source in ("cfd", "published", "berman_wang"):
             _part(self, source, HoverReference, optional=True)
+
+    @property
+    def reference(self) -> StrokeReference:
+        """What of its own stroke boxes may be relative to."""
+        return StrokeReference(self.stroke.frequency, self.stroke.flap_amplitude)
 
     def to_dict(self) -> dict[str, Any]:
         """The insect as JSON keeps it; `Insect(**d)` gives it back.

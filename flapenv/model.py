@@ -9,6 +9,7 @@ import numpy as np
 from flapenv.aero.arrays import Real, as_numpy
 from flapenv.aero.checks import record, require_flag, require_name, require_scalar
 from flapenv.aero.coefficients import SECTION_LIFT_SLOPE, checked_coefficients
+from flapenv.aero.history import ACCOUNTING
 from flapenv.aero.wing import EDGE_OUTLINES
 
 COEFFICIENTS: dict[str, str] = {
@@ -43,6 +44,8 @@ class HoverModel:
         coefficients: a name of `COEFFICIENTS`, or a function of α in [0, 90°] [rad] that gives the pair (C_L, C_D) as
             NumPy arrays of α's shape; it must take tensors to be used with them.
         profile_drag: C_D0, added to the drag coefficient at every angle [-].
+        accounting: "elastic" returns negative power, as the paper counts it; "positive" pays max(0, power) of
+            aerodynamics, added mass and the wing's inertia together, for which the wing needs a mass.
         edge_correction: outline that Jones' E is measured on, "ellipse" or "symmetric"; see `Wing.edge_correction`.
 
     Raises:
@@ -58,6 +61,7 @@ class HoverModel:
     coefficients: Any = "lifting-line"
     profile_drag: float = 0.0
     edge_correction: Literal["ellipse", "symmetric"] = "ellipse"
+    accounting: Literal["elastic", "positive"] = "elastic"
 
     def __post_init__(self) -> None:
         """Check every option."""
@@ -67,6 +71,7 @@ class HoverModel:
         object.__setattr__(self, "profile_drag", require_scalar("profile_drag", self.profile_drag, 0.0))
         require_name("tip_loss", self.tip_loss, ("reference", "stroke"))
         require_name("edge_correction", self.edge_correction, EDGE_OUTLINES)
+        require_name("accounting", self.accounting, ACCOUNTING)
         require_flag("induced", self.induced)
         if isinstance(self.coefficients, str):
             require_name("coefficients", self.coefficients, COEFFICIENTS)
@@ -87,8 +92,13 @@ class HoverModel:
 
     @property
     def is_plate(self) -> bool:
-        """Whether the coefficients are (2.7) and (2.12), with profile drag or without: the scope of the proofs."""
+        """Whether the coefficients are (2.7) and (2.12), with profile drag or without."""
         return self.coefficients in ("lifting-line", "extended-lifting-line")
+
+    @property
+    def has_proven_bound(self) -> bool:
+        """Whether the proofs of docs/optimum.md hold: (2.7), (2.12), profile drag or none, elastic power."""
+        return self.is_plate and self.accounting == "elastic"
 
 
 def warn_of_aspect_ratio(name: str, aspect_ratio: Real, model: HoverModel, *, stacklevel: int) -> None:

@@ -152,7 +152,7 @@ class HoverObjective:
             bound_gap=-power_term - 1 + reference["bound_charge"] * deficit,
             optimality_gap=np.where(feasible, gap, 0),
             feasible=feasible,
-            has_bound=np.full(len(feasible), self.problem.model.is_plate),
+            has_bound=np.full(len(feasible), self.problem.model.has_proven_bound),
         )
 
     def gap(self, number: int, weight_support: float, specific_power: float) -> float | None:

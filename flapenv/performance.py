@@ -6,6 +6,7 @@ from typing import Any
 from flapenv.aero import induced
 from flapenv.aero.arrays import Real, as_arrays, as_result
 from flapenv.aero.checks import record
+from flapenv.aero.paid_power import positive_power
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wingbeat import force_averages, time_nodes
 from flapenv.case import HoverCase, force_law, hover_case, induced_power_factor, lift_constant
@@ -80,6 +81,19 @@ def hover_averages(
     )
     weight_support = lift_scale * scale * speed**2 * lift_average
     specific_power = 2 * power_scale * scale * speed**3 * power_average
+    if model.accounting == "positive":
+        specific_power = positive_power(
+            law,
+            power_scale,
+            case.inertia,
+            frequency=frequency,
+            flap_amplitude=flap_amplitude,
+            flap_shape=flap_shape,
+            pitch_amplitude=pitch_amplitude,
+            pitch_shape=pitch_shape,
+            pitch_phase=pitch_phase,
+            nodes=nodes,
+        )
     return weight_support, specific_power
 
 

@@ -9,11 +9,13 @@ import numpy as np
 
 from flapenv.aero.arrays import Real
 from flapenv.aero.checks import record, require_name, require_scalar
-from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.aero.wingbeat import time_nodes
 from flapenv.model import COEFFICIENTS, HoverModel
 
 Interval = tuple[float, float]
+RELATIVE = ("frequency", "flap_amplitude")
+"""Parameters whose bounds may be given relative to the insect's own stroke."""
 
 
 @record
@@ -25,7 +27,8 @@ class StrokeBox:
     Attributes:
         frequency_ratio: f over the insect's reference frequency [-]; the default unless `frequency` is given.
         frequency: f [Hz], in place of `frequency_ratio`.
-        flap_amplitude: φmax [rad].
+        flap_amplitude: φmax [rad]; the default unless `flap_amplitude_ratio` is given.
+        flap_amplitude_ratio: φmax over the insect's own amplitude [-], in place of `flap_amplitude`.
         flap_shape: Cφ [-].
         pitch_shape: Cθ [-].
         pitch_amplitude: θmax [rad]; its upper bound is 90° minus the smallest angle of attack allowed.
@@ -38,7 +41,8 @@ class StrokeBox:
 
     frequency_ratio: Interval | None = None
     frequency: Interval | None = None
-    flap_amplitude: Interval = STROKE_PARAMETERS["flap_amplitude"].box
+    flap_amplitude: Interval | None = None
+    flap_amplitude_ratio: Interval | None = None
     flap_shape: Interval = STROKE_PARAMETERS["flap_shape"].box
     pitch_shape: Interval = STROKE_PARAMETERS["pitch_shape"].box
     pitch_amplitude: Interval = STROKE_PARAMETERS["pitch_amplitude"].box
@@ -46,33 +50,33 @@ class StrokeBox:
 
     def __post_init__(self) -> None:
         """Bring every bound to a checked pair of floats."""
-        if self.frequency is None and self.frequency_ratio is None:
-            object.__setattr__(self, "frequency_ratio", STROKE_PARAMETERS["frequency"].box)
-        elif self.frequency is not None and self.frequency_ratio is not None:
-            raise ValueError(
-                f"frequency = {self.frequency} and frequency_ratio = {self.frequency_ratio} both bound the frequency; "
-                "allowed: one of them"
-            )
+        for name, default in (("frequency", "frequency_ratio"), ("flap_amplitude", "flap_amplitude")):
+            ratio = f"{name}_ratio"
+            if getattr(self, name) is None and getattr(self, ratio) is None:
+                object.__setattr__(self, default, STROKE_PARAMETERS[name].box)
+            elif getattr(self, name) is not None and getattr(self, ratio) is not None:
+                raise ValueError(
+                    f"{name} = {getattr(self, name)} and {ratio} = {getattr(self, ratio)} both bound the {name}; "
+                    "allowed: one of them"
+                )
         for field, value in vars(self).copy().items():
             if value is not None:
                 object.__setattr__(self, field, _interval(field, value))
-            elif field not in ("frequency", "frequency_ratio"):
+            elif field.removesuffix("_ratio") not in RELATIVE:
                 raise TypeError(f"bounds of {field} = None are not allowed; allowed: (lower, upper) or one number")
 
-    def bounds(self, name: str, reference_frequency: Real) -> tuple[Real, Real]:
-        """Lower and upper bound of a stroke parameter [its SI unit], the frequency for the given reference [Hz]."""
-        if name != "frequency":
+    def bounds(self, name: str, reference: StrokeReference) -> tuple[Real, Real]:
+        """Lower and upper bound of a stroke parameter for an insect's own stroke [its SI unit]."""
+        if name not in RELATIVE or getattr(self, f"{name}_ratio") is None:
             low, high = getattr(self, name)
             return low, high
-        if self.frequency_ratio is None:
-            assert self.frequency is not None
-            return self.frequency
-        low, high = self.frequency_ratio
-        return low * reference_frequency, high * reference_frequency
+        low, high = getattr(self, f"{name}_ratio")
+        own = getattr(reference, name)
+        return low * own, high * own
 
     def is_free(self, name: str) -> bool:
         """Whether the parameter may vary."""
-        low, high = self.bounds(name, 1.0)
+        low, high = self.bounds(name, StrokeReference(1.0, 1.0))
         return bool(high > low)
 
     def time_nodes(self, *, tolerance: float) -> int:
@@ -89,7 +93,7 @@ class StrokeBox:
 
 def _interval(field: str, value: Any) -> Interval:
     """A checked (lower, upper) from a pair or a single number."""
-    name = "frequency" if field == "frequency_ratio" else field
+    name = field.removesuffix("_ratio")
     ends = tuple(value) if isinstance(value, list | tuple) or np.ndim(value) else (value, value)
     if len(ends) != 2 or any(np.ndim(end) for end in ends):
         raise TypeError(f"bounds of {field} = {value!r} are not allowed; allowed: (lower, upper) or one number")
@@ -145,16 +149,37 @@ class HoverProblem:
             object.__setattr__(self, "lift_penalty", penalty)
         floor = require_scalar("reward_floor", self.reward_floor, high=0.0, open_high=True)
         object.__setattr__(self, "reward_floor", floor)
-        if self.model.uses_k and self.box.flap_amplitude[1] > math.pi / 2:
-            raise ValueError(
-                f"upper bound of flap_amplitude = {self.box.flap_amplitude[1]:.6g} is not allowed; allowed: up to "
-                "1.5708 rad where k_flap is used, more only with model={'induced': False} or coefficients without k"
-            )
+        if self.box.flap_amplitude is not None:
+            self._require_amplitude("upper bound of flap_amplitude", self.box.flap_amplitude[1])
         if self.name is None:
             rest = (field for field in fields(self) if field.name not in ("name", "box", "model"))
             same = self.box == StrokeBox() and self.model == HoverModel()
             same &= all(getattr(self, field.name) == field.default for field in rest)
             object.__setattr__(self, "name", "free-frequency" if same else "custom")
+
+    def _require_amplitude(self, field: str, amplitude: float) -> None:
+        """Refuse an amplitude that the model has no answer for."""
+        if self.model.uses_k and amplitude > math.pi / 2 * (1 + 1e-12):
+            raise ValueError(
+                f"{field} = {amplitude:.6g} is not allowed; allowed: up to 1.5708 rad where k_flap is used, more only "
+                "with model={'induced': False} or coefficients without k"
+            )
+        if amplitude > math.pi:
+            raise ValueError(f"{field} = {amplitude:.6g} is not allowed; allowed: up to 3.1416 rad")
+
+    def require_suitable(self, name: str, reference: StrokeReference) -> None:
+        """Refuse an insect whose own stroke the box takes out of the model's range.
+
+        Args:
+            name: of the insect.
+            reference: its own stroke.
+
+        Raises:
+            ValueError: for an amplitude beyond what the model knows.
+        """
+        if self.box.flap_amplitude_ratio is not None:
+            upper = float(np.max(self.box.bounds("flap_amplitude", reference)[1]))
+            self._require_amplitude(f"upper bound of flap_amplitude for {name}", upper)
 
     @property
     def min_angle_of_attack(self) -> float:
@@ -175,8 +200,31 @@ class HoverProblem:
         return asdict(self)
 
 
-PROBLEMS: dict[str, HoverProblem] = {"free-frequency": HoverProblem()}
-"""The named problems."""
+PROBLEMS: dict[str, HoverProblem] = {
+    "free-frequency": HoverProblem(),
+    "fixed-frequency": HoverProblem(
+        name="fixed-frequency",
+        box=StrokeBox(
+            frequency_ratio=(1.0, 1.0),
+            flap_amplitude_ratio=(1.0, 1.0),
+            pitch_shape=(0.1, 100.0),
+            pitch_amplitude=(math.radians(30), math.radians(85)),
+        ),
+    ),
+    "profile-drag": HoverProblem(
+        name="profile-drag",
+        box=StrokeBox(pitch_amplitude=(math.radians(45), math.radians(85))),
+        model=HoverModel(profile_drag=0.1),
+    ),
+    "inertial": HoverProblem(name="inertial", model=HoverModel(accounting="positive")),
+}
+"""The named problems.
+
+- "free-frequency" (A): frequency and amplitude free, α >= 25°; the bound is tight and attained in the limit.
+- "fixed-frequency" (B): the insect's own frequency and amplitude, α_mid in [5°, 60°]; the bound is loose.
+- "profile-drag" (C): C_D0 = 0.1, α_mid in [5°, 45°]; the best angle lies inside.
+- "inertial" (D): A without springs, only positive power is paid, wing inertia and added mass count; no bound is proven.
+"""
 
 
 def as_problem(value: Any) -> HoverProblem:

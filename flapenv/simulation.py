@@ -1,8 +1,11 @@
 """A wingbeat of an insect in full, by the blade element: any motion, every force term, over time."""
 
 import inspect
+import warnings
 from collections.abc import Mapping
 from typing import Any
+
+import numpy as np
 
 from flapenv.aero import induced
 from flapenv.aero.blade_element import STEPS, STRIPS, blade_element
@@ -85,6 +88,8 @@ def evaluate_by_blade_element(
 ) -> tuple[float, float]:
     """Λ [-] and P* [W/kg] of one stroke by the blade-element oracle; arguments as in `blade_element`, `evaluate`.
 
+    As in `evaluate`, the lift is the translational one; added mass and inertia enter the power where it is "positive".
+
     Raises:
         TypeError: for what `evaluate` refuses, and for an insect or a stroke with array fields.
         ValueError: for what `evaluate` and `blade_element` refuse.
@@ -92,5 +97,9 @@ def evaluate_by_blade_element(
     insect, stroke, options = checked(insect, stroke, model)
     if not (is_single(insect) and is_single(stroke)):
         raise TypeError("insect or stroke has array fields; allowed: one insect and one stroke with scalar fields")
-    history = _history(insect, stroke, options, strips=strips, steps=steps, spacing=spacing)
-    return history.mean_lift / (insect.mass * options.gravity), history.mean_power() / insect.mass
+    terms = ("translational", "added-mass", "inertia") if options.accounting == "positive" else ("translational",)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="steps = .* do not resolve")  # the caller refines until they agree
+        history = _history(insect, stroke, options, terms=terms, strips=strips, steps=steps, spacing=spacing)
+    lift = float(np.mean(history.terms["translational"].force[:, 2]))
+    return lift / (insect.mass * options.gravity), history.mean_power(options.accounting) / insect.mass

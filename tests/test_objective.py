@@ -15,7 +15,7 @@ from flapenv.objective import HoverObjective
 def reward_of(objective: HoverObjective, points: np.ndarray) -> np.ndarray:
     """Rewards of the first insect at points of the cube, shape (n, axes)."""
     coordinates = StrokeCoordinates(objective.problem.box)
-    values, _ = coordinates.decode(points, objective.insects[0].stroke.frequency)
+    values, _ = coordinates.decode(points, objective.insects[0].reference)
     return objective.score(np.zeros(len(points), dtype=int), values).reward
 
 
@@ -36,7 +36,7 @@ def test_the_rewards_own_optimum_is_the_constrained_optimum(name: str) -> None:
         popsize=12,
     )
     assert -found.fun == pytest.approx(-best.specific_power / best.lower_bound, abs=1e-5)
-    values, _ = StrokeCoordinates(HoverProblem().box).decode(found.x[None], insect.stroke.frequency)
+    values, _ = StrokeCoordinates(HoverProblem().box).decode(found.x[None], insect.reference)
     assert values["frequency"][0] == pytest.approx(best.stroke.frequency, rel=1e-3)
     score = objective.score(np.zeros(1, dtype=int), values)
     assert score.weight_support[0] == pytest.approx(1, abs=1e-5)
@@ -48,7 +48,7 @@ def test_a_penalty_below_the_multiplier_sells_the_weight_and_is_warned_about() -
     with pytest.warns(UserWarning, match="lift_penalty = 0.5 is below the multiplier 1.57 of hawkmoth"):
         weak = HoverObjective([insect], HoverProblem(lift_penalty=0.5))
     strong = HoverObjective([insect], HoverProblem())
-    best = StrokeCoordinates(HoverProblem().box).encode(vars(optimum(insect).stroke), insect.stroke.frequency)
+    best = StrokeCoordinates(HoverProblem().box).encode(vars(optimum(insect).stroke), insect.reference)
     slower = best - np.array([0.02, 0, 0, 0, 0, 0])
     assert reward_of(weak, slower[None]) > reward_of(weak, best[None])
     assert reward_of(strong, slower[None]) < reward_of(strong, best[None])
@@ -75,7 +75,7 @@ def test_a_floor_above_the_best_reward_is_warned_about() -> None:
 def test_terms_add_up_to_the_reward_above_its_floor(insect: Insect, rng: np.random.Generator) -> None:
     objective = HoverObjective([insect], HoverProblem())
     coordinates = StrokeCoordinates(HoverProblem().box)
-    values, _ = coordinates.decode(rng.uniform(-1, 1, (500, 6)), insect.stroke.frequency)
+    values, _ = coordinates.decode(rng.uniform(-1, 1, (500, 6)), insect.reference)
     score = objective.score(np.zeros(500, dtype=int), values)
     np.testing.assert_allclose(score.reward, np.maximum(-20, score.power_term + score.lift_term))
     assert np.all(score.power_term < 0)
@@ -103,7 +103,7 @@ def test_a_steep_multiplier_is_charged_double_in_units_of_each_reference() -> No
     assert charge > 10
     objective = HoverObjective([load_insect("hawkmoth")], steep)
     assert objective.gap(0, 0.99, best.specific_power) == pytest.approx(0.01 * charge)
-    values, _ = StrokeCoordinates(steep.box).decode(np.array([[-0.9, 0.5, 0.5]]), 26.3)
+    values, _ = StrokeCoordinates(steep.box).decode(np.array([[-0.9, 0.5, 0.5]]), load_insect("hawkmoth").reference)
     score = objective.score(np.zeros(1, dtype=int), values)
     missing = score.lift_deficit[0]
     assert missing > 0
@@ -116,7 +116,7 @@ def test_a_steep_multiplier_is_charged_double_in_units_of_each_reference() -> No
 def test_an_infeasible_insect_has_no_gap() -> None:
     objective = HoverObjective([load_insect("hawkmoth")], HoverProblem(box={"frequency_ratio": (0.1, 0.2)}))
     assert objective.gap(0, 0.5, 10.0) is None
-    values, _ = StrokeCoordinates(objective.problem.box).decode(np.zeros((1, 6)), 26.3)
+    values, _ = StrokeCoordinates(objective.problem.box).decode(np.zeros((1, 6)), load_insect("hawkmoth").reference)
     score = objective.score(np.zeros(1, dtype=int), values)
     assert not score.feasible[0]
     assert math.isfinite(score.reward[0])

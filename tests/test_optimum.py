@@ -236,7 +236,7 @@ def test_a_box_of_one_stroke_is_its_own_optimum() -> None:
 
 def test_the_optimum_beats_every_random_stroke_that_hovers(rng: np.random.Generator) -> None:
     best, box = optimum(HAWKMOTH), HoverProblem().box
-    values = {name: rng.uniform(*box.bounds(name, HAWKMOTH.stroke.frequency), size=20_000) for name in box.free}
+    values = {name: rng.uniform(*box.bounds(name, HAWKMOTH.reference), size=20_000) for name in box.free}
     result = evaluate(HAWKMOTH, Stroke(**values))
     assert np.min(result.specific_power[result.weight_support >= 1]) > best.specific_power
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flapenv import HoverProblem, StrokeBox
-from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.aero.wingbeat import speed_averages
 from flapenv.problem import as_problem
 
@@ -27,8 +27,8 @@ def test_the_default_is_problem_a_with_the_box_of_the_documentation() -> None:
 
 
 def test_frequency_bounds_are_relative_unless_given_in_hertz() -> None:
-    assert StrokeBox().bounds("frequency", 20.0) == (10, 30)
-    assert StrokeBox(frequency=(15, 25)).bounds("frequency", 20.0) == (15, 25)
+    assert StrokeBox().bounds("frequency", StrokeReference(20.0, 1.0)) == (10, 30)
+    assert StrokeBox(frequency=(15, 25)).bounds("frequency", StrokeReference(20.0, 1.0)) == (15, 25)
 
 
 def test_a_box_that_reaches_the_triangle_gets_nodes_for_its_sharpest_neighbours() -> None:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, NamedTuple
 
 from flapenv.aero.checks import require_real
 
@@ -45,6 +45,18 @@ class StrokeParameter:
             ValueError: if it is outside, NaN or infinite.
         """
         return require_real(field or self.name, value, self.low, self.high, open_low=self.open_low, unit=self.unit)
+
+
+class StrokeReference(NamedTuple):
+    """What of an insect's own stroke a box may be relative to: scalars or arrays.
+
+    Attributes:
+        frequency: f [Hz].
+        flap_amplitude: φmax [rad].
+    """
+
+    frequency: Any
+    flap_amplitude: Any
 
 
 STROKE_PARAMETERS: dict[str, StrokeParameter] = {

@@ -74,6 +74,47 @@ def angle_of_attack(pitch_angle: Real, flap_rate: Real) -> Real:
     return math.pi / 2 - pitch_angle * xp.sign(flap_rate)
 
 
+def flap_bend(sin_phase: Real, cos_phase: Real, flap_shape: Real) -> Real:
+    """φ̈/(ω² φmax) = -Cφ (1-Cφ²) sin ωt/(asin(Cφ) (1-Cφ² sin² ωt)^1.5) [-], from (2.1).
+
+    The triangle, Cφ = 1, has none but at its corners, where it is infinite and 0 is returned.
+
+    Args:
+        sin_phase: sin ωt [-], any shape.
+        cos_phase: cos ωt [-], from which the root is taken without losing digits.
+        flap_shape: Cφ in [0, 1] [-].
+    """
+    xp, sin_phase, cos_phase, shape = as_arrays(sin_phase, cos_phase, flap_shape)
+    shape = xp.clip(without_slope(shape, shape == 1), SMALLEST_SHAPE, None)
+    rest = (1 - shape) * (1 + shape)
+    root = xp.sqrt(xp.clip(rest + (shape * cos_phase) ** 2, 1e-36, None))
+    return -(shape / xp.asin(shape)) * (rest / root**3) * sin_phase
+
+
+def pitch_speed(sin_pitch_phase: Real, cos_pitch_phase: Real, pitch_shape: Real) -> Real:
+    """θ̇/(ω θmax) = Cθ cos(ωt+δ) sech²(Cθ sin(ωt+δ))/tanh(Cθ) [-], from (2.2).
+
+    Args:
+        sin_pitch_phase: sin(ωt + δ) [-], any shape.
+        cos_pitch_phase: cos(ωt + δ) [-].
+        pitch_shape: Cθ >= 0 [-].
+    """
+    xp, sine, cosine, shape = as_arrays(sin_pitch_phase, cos_pitch_phase, pitch_shape)
+    shape = xp.clip(shape, SMALLEST_SHAPE, None)
+    return shape * cosine * _sech_squared(shape * sine) / xp.tanh(shape)
+
+
+def pitch_bend(sin_pitch_phase: Real, cos_pitch_phase: Real, pitch_shape: Real) -> Real:
+    """θ̈/(ω² θmax) = -Cθ sech² u (sin(ωt+δ) + 2 Cθ cos²(ωt+δ) tanh u)/tanh(Cθ) [-], u = Cθ sin(ωt+δ).
+
+    Arguments as in `pitch_speed`.
+    """
+    xp, sine, cosine, shape = as_arrays(sin_pitch_phase, cos_pitch_phase, pitch_shape)
+    shape = xp.clip(shape, SMALLEST_SHAPE, None)
+    bend = sine + 2 * shape * cosine**2 * xp.tanh(shape * sine)
+    return -shape * _sech_squared(shape * sine) * bend / xp.tanh(shape)
+
+
 def _sech_squared(value: Real) -> Real:
     """sech², without overflow [-]."""
     xp, value = as_arrays(value)
@@ -135,35 +176,25 @@ class Stroke:
         return amplitude * pitch_waveform(xp.sin(phase + delta), self.pitch_shape)
 
     def pitch_rate(self, phase: Real) -> Real:
-        """θ̇(ωt) = θmax ω Cθ cos(ωt+δ) sech²(Cθ sin(ωt+δ))/tanh(Cθ) [rad/s], the rate of (2.2)."""
-        xp, phase, amplitude, frequency, delta, shape = as_arrays(
-            phase, self.pitch_amplitude, self.frequency, self.pitch_phase, self.pitch_shape
+        """θ̇(ωt) [rad/s], the rate of (2.2); phases [rad] broadcast against the fields."""
+        xp, phase, amplitude, frequency, delta = as_arrays(
+            phase, self.pitch_amplitude, self.frequency, self.pitch_phase
         )
-        shape = xp.clip(shape, SMALLEST_SHAPE, None)
-        decay = _sech_squared(shape * xp.sin(phase + delta))
-        return amplitude * 2 * math.pi * frequency * shape * xp.cos(phase + delta) * decay / xp.tanh(shape)
+        phase = phase + delta
+        return 2 * math.pi * frequency * amplitude * pitch_speed(xp.sin(phase), xp.cos(phase), self.pitch_shape)
 
     def flap_acceleration(self, phase: Real) -> Real:
-        """φ̈(ωt) = -φmax Cφ ω² (1-Cφ²) sin ωt/(asin(Cφ) (1-Cφ² sin² ωt)^1.5) [rad/s²], from (2.1).
-
-        The triangle, Cφ = 1, has none but at its corners, where it is infinite and 0 is returned.
-        """
-        xp, phase, amplitude, frequency, shape = as_arrays(phase, self.flap_amplitude, self.frequency, self.flap_shape)
-        shape = xp.clip(shape, SMALLEST_SHAPE, None)
-        rest = (1 - shape) * (1 + shape)
-        root = xp.sqrt(xp.clip(rest + (shape * xp.cos(phase)) ** 2, 1e-36, None))
-        omega = 2 * math.pi * frequency
-        return -amplitude * omega**2 * (shape / xp.asin(shape)) * (rest / root**3) * xp.sin(phase)
+        """φ̈(ωt) [rad/s²], from (2.1); phases [rad] broadcast against the fields."""
+        xp, phase, amplitude, frequency = as_arrays(phase, self.flap_amplitude, self.frequency)
+        return (2 * math.pi * frequency) ** 2 * amplitude * flap_bend(xp.sin(phase), xp.cos(phase), self.flap_shape)
 
     def pitch_acceleration(self, phase: Real) -> Real:
-        """θ̈(ωt) = -θmax ω² Cθ sech² u (sin(ωt+δ) + 2 Cθ cos²(ωt+δ) tanh u)/tanh(Cθ) [rad/s²], u = Cθ sin(ωt+δ)."""
-        xp, phase, amplitude, frequency, delta, shape = as_arrays(
-            phase, self.pitch_amplitude, self.frequency, self.pitch_phase, self.pitch_shape
+        """θ̈(ωt) [rad/s²], from (2.2); phases [rad] broadcast against the fields."""
+        xp, phase, amplitude, frequency, delta = as_arrays(
+            phase, self.pitch_amplitude, self.frequency, self.pitch_phase
         )
-        shape = xp.clip(shape, SMALLEST_SHAPE, None)
-        sine, cosine, omega = xp.sin(phase + delta), xp.cos(phase + delta), 2 * math.pi * frequency
-        bend = sine + 2 * shape * cosine**2 * xp.tanh(shape * sine)
-        return -amplitude * omega**2 * shape * _sech_squared(shape * sine) * bend / xp.tanh(shape)
+        phase = phase + delta
+        return (2 * math.pi * frequency) ** 2 * amplitude * pitch_bend(xp.sin(phase), xp.cos(phase), self.pitch_shape)
 
     def angle_of_attack(self, phase: Real) -> Real:
         """α(ωt) [rad]  (2.3)."""

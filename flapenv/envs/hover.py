@@ -1,6 +1,7 @@
 """flapenv/Hover-v0: one step is one wingbeat; hover with the least power. Native vector env, and its batch of one."""
 
 import inspect
+import math
 import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -11,7 +12,7 @@ from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
 from flapenv.aero.checks import allowed, require_flag, require_name
-from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
 from flapenv.envs.batch import BatchEnv, Info, checked_actions, require_seed
@@ -24,6 +25,8 @@ from flapenv.problem import PROBLEMS, HoverProblem, as_problem
 InsectChoice = str | Insect | Mapping[str, Any] | Sequence[Any]
 ProblemChoice = str | HoverProblem | Mapping[str, Any]
 OBSERVATION_LIMIT = 5.0
+AMPLITUDE_0, AMPLITUDE_1 = math.radians(67.5), math.radians(22.5)
+"""Middle and half-range of the observed bound of φmax [rad]."""
 NOT_YET = -1
 DEFAULT_PROBLEM = next(iter(PROBLEMS))
 
@@ -123,15 +126,17 @@ class HoverVectorEnv(BatchEnv):
         if not np.all(weight_support > 0):
             raise ValueError("coefficients lift nothing at an angle of attack of 35°; allowed: a lift to fly on")
         r1_hat = np.array([one.wing.r1_hat for one in self.insects])
-        self._features = np.stack(
-            [cases.aspect_ratio - 4, (r1_hat - 0.51) / 0.04, np.log(weight_support)], axis=-1
-        ).astype(np.float32)
+        features = [cases.aspect_ratio - 4, (r1_hat - 0.51) / 0.04, np.log(weight_support)]
+        if self.problem.box.flap_amplitude_ratio is not None:
+            features.append((self.problem.box.bounds("flap_amplitude", cases.reference)[1] - AMPLITUDE_0) / AMPLITUDE_1)
+        self._features = np.stack(features, axis=-1).astype(np.float32)
         self._names = np.array([one.name for one in self.insects], dtype=object)
-        self._frequency = np.asarray(cases.reference_frequency, dtype=self.dtype)
+        self._reference = StrokeReference(*(np.asarray(own, dtype=self.dtype) for own in cases.reference))
 
+        seen = len(features) + 3
         super().__init__(
             num_envs,
-            single_observation_space=spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (6,), np.float32),
+            single_observation_space=spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (seen,), np.float32),
             single_action_space=spaces.Box(-1.0, 1.0, (len(self.coordinates),), np.float32),
             autoreset_mode=autoreset_mode,
             render_mode=render_mode,
@@ -161,7 +166,7 @@ class HoverVectorEnv(BatchEnv):
         return np.array([own.index(require_name("reset option insect", name, own)) for name in names], dtype=np.intp)
 
     def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
-        strokes, clipped = self.coordinates.decode(actions.astype(self.dtype), self._frequency[self._insect])
+        strokes, clipped = self.coordinates.decode(actions.astype(self.dtype), self._reference_of(self._insect))
         score = self.objective.score(self._insect, strokes)
         felt = np.stack(
             [
@@ -176,6 +181,10 @@ class HoverVectorEnv(BatchEnv):
             self._stroke[name] = np.where(mask, value, self._stroke[name])
         self._beaten = np.where(mask, self._insect, self._beaten)
         return score.reward, mask.copy(), np.zeros(self.num_envs, dtype=bool), self._info(score, strokes, clipped)
+
+    def _reference_of(self, rows: np.ndarray) -> StrokeReference:
+        """The own strokes of the insects at `rows`."""
+        return StrokeReference(*(own[rows] for own in self._reference))
 
     def _info(self, score: Score, strokes: dict[str, np.ndarray], clipped: np.ndarray) -> Info:
         return {
@@ -253,13 +262,14 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
     of both. NaN and inf are refused.
 
     ## Observation space
-    `Box(-5, 5, (6,), float32)`. Nothing in it needs the optimum or names the insect.
+    `Box(-5, 5, (6,), float32)`, 7 in problem "fixed-frequency". Nothing in it needs the optimum or names the insect.
 
     | Num | Observation |
     |---|---|
     | 0 | AR - 4, aspect ratio of one wing |
     | 1 | (r̂₁ - 0.51)/0.04, centre of area |
     | 2 | log Λ_ref, weight support at the reference frequency, φmax = 60°, constant speed and α = 35° |
+    | - | (φmax - 67.5°)/22.5°, the upper bound of φmax, only where the box takes it from the insect |
     | 3 | last Λ - 1; 0 at the start |
     | 4 | last log(P*/P*_felt), P*_felt from the same yardstick stroke; 0 at the start |
     | 5 | fraction of the episode left |

@@ -26,7 +26,7 @@ def optimal_actions(problem: HoverProblem) -> np.ndarray:
     coordinates = StrokeCoordinates(problem.box)
     return np.stack(
         [
-            coordinates.encode(vars(optimum(name, problem).stroke), load_insect(name).stroke.frequency)
+            coordinates.encode(vars(optimum(name, problem).stroke), load_insect(name).reference)
             for name in INSECTS
         ]
     )

@@ -43,7 +43,7 @@ INFO_KEYS = {
 def optimal_action(env: HoverEnv, insect: Insect) -> np.ndarray:
     batch = env.batch
     best = optimum(insect, batch.problem).stroke
-    return batch.coordinates.encode(vars(best), insect.stroke.frequency).astype(np.float32)
+    return batch.coordinates.encode(vars(best), insect.reference).astype(np.float32)
 
 
 def test_one_wingbeat_is_one_episode_and_terminates() -> None:
