@@ -1,10 +1,10 @@
 """Action coordinates: strokes of a box as points of the cube [-1, 1]^n, shared by environments and optimisers."""
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from flapenv.aero.arrays import Real
+from flapenv.aero.arrays import Real, as_arrays, as_like, as_numpy_type
 from flapenv.aero.checks import require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.problem import StrokeBox
@@ -46,40 +46,42 @@ class StrokeCoordinates:
         """What each axis is; "tip_speed" stands for q = f φmax."""
         return tuple("tip_speed" if n == "frequency" and self._uses_tip_speed else n for n in self.names)
 
-    def decode(self, points: np.ndarray, reference: StrokeReference) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    def decode(self, points: Real, reference: StrokeReference) -> tuple[dict[str, Any], Any]:
         """Strokes at points of the cube; a point outside is moved to its nearest face.
 
         Args:
-            points: shape (..., n), float32 or float64, finite.
+            points: shape (..., n), float32 or float64, finite; arrays, or tensors, which keep their gradient.
             reference: the own strokes that the box may be relative to, scalars or shape (...).
 
         Returns:
             The stroke's fields by name, each of shape (...) and the points' type [SI units], and where anything
             was clipped, shape (...) of bool.
         """
-        inside = np.clip(points, -1, 1)
-        clipped = np.any(inside != points, axis=-1)
-        shape, dtype = points.shape[:-1], points.dtype
-        values: dict[str, np.ndarray] = {}
+        xp, points = as_arrays(points)
+        inside = xp.clip(points, -1, 1)
+        clipped = xp.any(inside != points, axis=-1)
+        shape, dtype = points.shape[:-1], as_numpy_type(points)
+        values: dict[str, Any] = {}
         for name in STROKE_PARAMETERS:
-            low, high = _inside(*self.box.bounds(name, reference), dtype)
+            low, high = as_like(points, *_inside(*self.box.bounds(name, reference), dtype))
             if name not in self.names:
-                values[name] = np.broadcast_to(low, shape)
+                values[name] = xp.broadcast_to(low, shape)
                 continue
             fraction = (inside[..., self.names.index(name)] + 1) / 2
             if name == "frequency" and self._uses_tip_speed:
                 values[name] = fraction  # awaits φmax
                 continue
-            values[name] = np.clip(_between(fraction, low, high, *self._scale(name)), low, high)
+            values[name] = xp.clip(_between(fraction, low, high, *self._scale(name)), low, high)
         if self._uses_tip_speed:
             amplitude = values["flap_amplitude"]
-            low, high = _inside(*self.box.bounds("frequency", reference), dtype)
-            first, last = (np.asarray(bound, dtype) for bound in self.box.bounds("flap_amplitude", reference))
+            low, high = as_like(points, *_inside(*self.box.bounds("frequency", reference), dtype))
+            bounds = self.box.bounds("flap_amplitude", reference)
+            first, last = as_like(points, *(np.asarray(bound, dtype) for bound in bounds))
             tip_speed = _between(values["frequency"], low * first, high * last, "log")
             frequency = tip_speed / amplitude
-            values["frequency"] = np.clip(frequency, low, high)
+            values["frequency"] = xp.clip(frequency, low, high)
             slack = 8 * np.finfo(dtype).eps
-            clipped |= np.abs(values["frequency"] - frequency) > slack * frequency
+            clipped = clipped | (xp.abs(values["frequency"] - frequency) > slack * frequency)
         return values, clipped
 
     def encode(self, values: dict[str, np.ndarray], reference: StrokeReference) -> np.ndarray:
@@ -116,15 +118,16 @@ def _inside(low: Real, high: Real, dtype: np.dtype) -> tuple[np.ndarray, np.ndar
     return np.minimum(cast_low, cast_high), cast_high
 
 
-def _between(fraction: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str, floor: float = 0.0) -> np.ndarray:
+def _between(fraction: Real, low: Real, high: Real, scale: str, floor: float = 0.0) -> Real:
     """The value a fraction of the way from `low` to `high` along a scale."""
+    xp, fraction, low, high = as_arrays(fraction, low, high)
     if scale == "linear":
         return low + (high - low) * fraction
     if scale == "log-complement":
         return 1 - _between(fraction, 1 - low, 1 - high, "log", floor)
     shift = _shift(low, high, floor)
-    start, stop = np.log(low + shift), np.log(high + shift)
-    return np.exp(start + (stop - start) * fraction) - shift
+    start, stop = xp.log(low + shift), xp.log(high + shift)
+    return xp.exp(start + (stop - start) * fraction) - shift
 
 
 def _fraction(value: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str, floor: float = 0.0) -> np.ndarray:
@@ -137,7 +140,8 @@ def _fraction(value: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str, 
     return np.log((value + shift) / (low + shift)) / np.log((high + shift) / (low + shift))
 
 
-def _shift(low: np.ndarray, high: np.ndarray, floor: float) -> np.ndarray:
+def _shift(low: Real, high: Real, floor: float) -> Real:
     """What keeps a log scale off its pole: nothing, unless an end lies nearer to it than the floor."""
-    least = np.minimum(low, high)
-    return np.where(least < floor, floor, 0.0).astype(np.result_type(least))
+    xp, low, high = as_arrays(low, high)
+    least = xp.minimum(low, high)
+    return xp.where(least < floor, floor + 0 * least, 0 * least)

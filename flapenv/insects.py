@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from importlib import resources
 from typing import Any
 
+import numpy as np
+
 from flapenv.aero.arrays import Real
 from flapenv.aero.checks import record, require_name, require_real, require_scalar
 from flapenv.aero.parameters import StrokeReference
@@ -239,3 +241,21 @@ def as_insect(value: Any) -> Insect:
     if isinstance(value, Insect):
         return value
     raise TypeError(f"insect = {value!r} is not allowed; allowed: an Insect, a dict of its fields or a name")
+
+
+def pick(insects: Insect, number: int) -> Insect:
+    """One of the insects that array fields hold, with scalar fields, called by its number.
+
+    Args:
+        insects: an insect with fields of shape (n,) or scalars.
+        number: which, from 0.
+    """
+
+    def one(value: Any) -> Any:
+        if dataclasses.is_dataclass(value) and not isinstance(value, type):
+            return dataclasses.replace(
+                value, **{f.name: one(getattr(value, f.name)) for f in dataclasses.fields(value)}
+            )
+        return float(value[number]) if np.ndim(value) == 1 and not isinstance(value, tuple | list | str) else value
+
+    return dataclasses.replace(one(insects), name=f"{insects.name}-{number}")

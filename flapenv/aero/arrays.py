@@ -56,6 +56,11 @@ def as_like(reference: Real, *values: np.ndarray) -> tuple[Real, ...]:
     return tuple(value.astype(reference.dtype, copy=False) for value in values)
 
 
+def as_numpy_type(value: Real) -> np.dtype:
+    """NumPy's name for the floating type of an array or a tensor."""
+    return np.dtype(str(value.dtype).removeprefix("torch."))
+
+
 def without_slope(value: Real, where: Real) -> Real:
     """`value`, taken as a constant by differentiation where the condition holds; NumPy knows no slopes.
 

@@ -28,7 +28,7 @@ class ForceLaw(abc.ABC):
         profile_drag: C_D0, added to the drag at every angle (Part II, section 3.2) [-].
     """
 
-    profile_drag: float = 0.0
+    profile_drag: Real = 0.0
 
     @abc.abstractmethod
     def lift(self, sine: Real, cosine: Real) -> Real:

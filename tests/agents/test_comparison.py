@@ -25,10 +25,7 @@ class Fixed:
 def optimal_actions(problem: HoverProblem) -> np.ndarray:
     coordinates = StrokeCoordinates(problem.box)
     return np.stack(
-        [
-            coordinates.encode(vars(optimum(name, problem).stroke), load_insect(name).reference)
-            for name in INSECTS
-        ]
+        [coordinates.encode(vars(optimum(name, problem).stroke), load_insect(name).reference) for name in INSECTS]
     )
 
 

@@ -1,0 +1,127 @@
+"""Random wings that hover: the pool on which policies and optimisers are compared beyond the eight insects."""
+
+import functools
+import math
+from typing import Literal
+
+import numpy as np
+
+from flapenv.aero import induced
+from flapenv.aero.checks import require_count, require_name, require_scalar
+from flapenv.aero.stroke import Stroke
+from flapenv.aero.wing import Wing
+from flapenv.insects import Insect, WingFactors
+from flapenv.many_optima import best_frequency, largest_weight_support
+from flapenv.model import HoverModel
+from flapenv.problem import PROBLEMS
+
+Split = Literal["train", "test", "outside"]
+SPLITS: tuple[Split, ...] = ("train", "test", "outside")
+ASPECT_RATIO = (2.6, 5.6)
+OUTSIDE_ASPECT_RATIO = ((2.2, 2.6), (5.6, 6.5))
+R1_HAT = (0.45, 0.57)
+LENGTH = (2e-3, 55e-3)
+"""R [m]."""
+WING_LOADING = (1.8, 17.0)
+"""m g/(2S) [N/m²]; Table 1 spans 1.85 to 16.6."""
+FREQUENCY_RATIO = (0.53, 1.30)
+"""Frequency of problem A's optimum over the reference frequency; Table 1 spans 0.535 to 1.241."""
+FREQUENCY = (15.0, 1000.0)
+"""Reference frequencies kept [Hz]."""
+AMPLITUDE = (math.radians(45), math.radians(90))
+"""φmax of the own stroke [rad]."""
+ITERATIONS = 30
+"""Of k_tip and the frequency that depend on each other; the change shrinks tenfold and more in each."""
+BLOCK = 1024
+"""Wings drawn at once; a pool is the beginning of an endless sequence, whatever its size."""
+
+
+def wing_pool(size: int, *, seed: int = 0, split: Split = "train", min_weight_support: float | None = None) -> Insect:
+    """Random wings, their weights and own strokes, as one insect with array fields.
+
+    Aspect ratio, r̂₁, length (log-uniform), wing loading (log-uniform) and u are drawn independently. The reference
+    frequency is f_A/u, f_A that of problem A's optimum, so that no single action solves every wing; k_tip
+    belongs to the own stroke. φmax of that is uniform, for the problem of fixed amplitude.
+
+    Args:
+        size: number of wings.
+        seed: of the pool; the splits of a seed are independent of each other.
+        split: "train", "test", or "outside", with aspect ratios of 2.2-2.6 and 5.6-6.5 in place of 2.6-5.6.
+        min_weight_support: keep only wings whose largest weight support in the problem "fixed-frequency" is at least
+            this; None keeps all.
+
+    Returns:
+        An `Insect` named after the pool, every number an array of shape (size,).
+
+    Raises:
+        TypeError: for a size or seed that is not a whole number.
+        ValueError: for one out of range, or an unknown split.
+    """
+    require_count("size", size)
+    require_count("seed", seed, low=0)
+    require_name("split", split, SPLITS)
+    if min_weight_support is not None:
+        min_weight_support = require_scalar("min_weight_support", min_weight_support, 0.0, 3.0)
+    return _pool(size, seed, split, min_weight_support)
+
+
+@functools.lru_cache(maxsize=16)
+def _pool(size: int, seed: int, split: Split, min_weight_support: float | None) -> Insect:
+    """Draw blocks until enough are accepted."""
+    rng = np.random.default_rng(np.random.SeedSequence([seed, SPLITS.index(split)]))
+    name, kept, count = f"{split}-{seed}", [], 0
+    while count < size:
+        drawn, accepted = _block(rng, split, name)
+        if min_weight_support is not None:
+            accepted &= largest_weight_support(drawn, PROBLEMS["fixed-frequency"]) >= min_weight_support
+        table = drawn.k_table
+        assert table is not None
+        wing, stroke = drawn.wing, drawn.stroke
+        columns = (
+            *(wing.length, wing.mean_chord, wing.r1_hat, drawn.mass),
+            *(stroke.frequency, stroke.flap_amplitude, table.k_ind, table.k_tip),
+        )
+        kept.append(np.stack(columns)[:, accepted])
+        count += int(np.sum(accepted))
+    return _insects(name, *np.concatenate(kept, axis=1)[:, :size])
+
+
+def _block(rng: np.random.Generator, split: Split, name: str) -> tuple[Insect, np.ndarray]:
+    """`BLOCK` draws and which of them have a frequency that is kept."""
+    aspect_ratio, r1_hat = _aspect_ratios(rng, split), rng.uniform(*R1_HAT, BLOCK)
+    length, loading = (
+        np.exp(rng.uniform(math.log(low), math.log(high), BLOCK)) for low, high in (LENGTH, WING_LOADING)
+    )
+    ratio, amplitude = rng.uniform(*FREQUENCY_RATIO, BLOCK), rng.uniform(*AMPLITUDE, BLOCK)
+    model, problem = HoverModel(), PROBLEMS["free-frequency"]
+    wing = Wing(length=length, mean_chord=length / aspect_ratio, r1_hat=r1_hat)
+    mass = 2 * wing.area * loading / model.gravity
+    k_ind = induced.k_ind(wing)
+    downwash = induced.hover_downwash(wing, mass * model.gravity, model.air_density)
+    frequency = np.full(BLOCK, 100.0)
+    for _ in range(ITERATIONS):  # k_tip belongs to the own stroke, whose frequency follows from the optimum's
+        k_tip = induced.k_tip(downwash, 4 * amplitude * frequency * length)
+        drawn = _insects(name, length, wing.mean_chord, r1_hat, mass, frequency, amplitude, k_ind, k_tip)
+        frequency = best_frequency(drawn, problem) / ratio
+    return drawn, (frequency > FREQUENCY[0]) & (frequency < FREQUENCY[1])
+
+
+def _aspect_ratios(rng: np.random.Generator, split: Split) -> np.ndarray:
+    """Aspect ratios of a split; outside, from both ranges in proportion to their width."""
+    if split != "outside":
+        return rng.uniform(*ASPECT_RATIO, BLOCK)
+    (first, last), (start, end) = OUTSIDE_ASPECT_RATIO
+    place = rng.uniform(0, last - first + end - start, BLOCK)
+    return np.where(place < last - first, first + place, start + place - (last - first))
+
+
+def _insects(name: str, *columns: np.ndarray) -> Insect:
+    """Insects from their columns."""
+    length, mean_chord, r1_hat, mass, frequency, amplitude, k_ind, k_tip = columns
+    return Insect(
+        name=name,
+        mass=mass,
+        wing=Wing(length=length, mean_chord=mean_chord, r1_hat=r1_hat),
+        stroke=Stroke(frequency=frequency, flap_amplitude=amplitude, pitch_amplitude=math.radians(55)),
+        k_table=WingFactors(k_ind=k_ind, k_tip=k_tip),
+    )
