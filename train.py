@@ -1,6 +1,7 @@
 """Train a policy that hovers with the least power, and compare it with the proven optimum and CFD.
 
 With no argument: one policy for all eight insects, from random weights, on the CPU, in a few minutes.
+`python train.py compare` lets optimisers search the same strokes with equal budgets; see `train.py compare --help`.
 """
 
 import argparse
@@ -23,7 +24,8 @@ def parser() -> argparse.ArgumentParser:
             "examples:\n"
             "  python train.py                              all eight insects, seed 0, into runs/hover-ppo-seed0/\n"
             "  python train.py --seed 1 --out runs/second   another seed, a folder of your own\n"
-            "  python train.py --insects hawkmoth fruitfly --wingbeats 500000\n\n"
+            "  python train.py --insects hawkmoth fruitfly --wingbeats 500000\n"
+            "  python train.py compare --policy runs/second the same wings by optimisers, equal budgets\n\n"
             "a run folder holds config.json, results.json, policy.zip, curve.csv, TensorBoard logs and two pictures;\n"
             "Ctrl-C stops early, keeps what was learned and prints the comparison for it"
         ),
@@ -49,16 +51,73 @@ def parser() -> argparse.ArgumentParser:
     return made
 
 
+def compare_parser() -> argparse.ArgumentParser:
+    """The command line of `compare`."""
+    from agents.competitors import COMPETITORS
+    from flapenv import INSECTS, PROBLEMS
+
+    made = argparse.ArgumentParser(
+        prog="train.py compare",
+        description="Why not an optimiser? Let each search with the same budget of wingbeats on the same wings.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples:\n"
+            "  python train.py compare                                  eight insects, five seeds, 10,000 wingbeats\n"
+            "  python train.py compare --problem fixed-frequency --wings 20\n"
+            "  python train.py compare --policy runs/hover-ppo-seed0     a trained policy in the same table\n\n"
+            "one evaluation of one stroke on one wing is one wingbeat, with its gradient three; writes results.json,\n"
+            "table.txt and competition.png"
+        ),
+    )
+    made.add_argument("--problem", default=next(iter(PROBLEMS)), metavar="NAME", help=f"of {', '.join(PROBLEMS)}")
+    made.add_argument("--insects", nargs="*", default=list(INSECTS), metavar="NAME", help="default: all eight")
+    made.add_argument("--wings", type=int, default=0, metavar="N", help="random wings beside them (default 0)")
+    made.add_argument(
+        "--competitors", nargs="+", default=list(COMPETITORS), metavar="NAME", help=f"of {', '.join(COMPETITORS)}"
+    )
+    made.add_argument("--wingbeats", type=int, default=10_000, metavar="N", help="budget of a search (default 10,000)")
+    made.add_argument("--seeds", type=int, default=5, metavar="N", help="searches of each kind a wing (default 5)")
+    made.add_argument("--policy", type=Path, action="append", default=[], metavar="DIR", help="run folder; repeatable")
+    made.add_argument("--out", type=Path, metavar="DIR", help="folder, new or empty (default runs/compare-PROBLEM/)")
+    made.add_argument("--quiet", action="store_true", help="no progress bar")
+    return made
+
+
+def compare(arguments: list[str]) -> int:
+    """Run the competition; 0 on success, 2 for bad input."""
+    options = compare_parser().parse_args(arguments)
+    from agents.competition import CompetitionConfig, compete, competition_table, save
+
+    try:
+        config = CompetitionConfig(
+            problem=options.problem,
+            insects=options.insects,
+            wings=options.wings,
+            competitors=options.competitors,
+            wingbeats=options.wingbeats,
+            seeds=options.seeds,
+            policies=options.policy,
+        )
+        result = compete(config, progress=not options.quiet)
+        print(competition_table(result), flush=True)
+        print(f"kept in {save(result, options.out)}")
+    except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
+        print(f"train.py compare: {mistake}", file=sys.stderr)
+        return 2
+    return 0
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Train as the command line says; 0 on success, 2 for bad input, 130 after Ctrl-C."""
+    arguments = sys.argv[1:] if arguments is None else arguments
     try:
-        return run(arguments)
+        return compare(arguments[1:]) if arguments[:1] == ["compare"] else run(arguments)
     except KeyboardInterrupt:
         print("train.py: stopped outside of training; files already written are kept", file=sys.stderr)
         return 130
 
 
-def run(arguments: list[str] | None) -> int:
+def run(arguments: list[str]) -> int:
     """`main` without the guard against Ctrl-C."""
     options = parser().parse_args(arguments)
     try:

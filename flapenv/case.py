@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero import induced
-from flapenv.aero.arrays import Real, as_arrays
+from flapenv.aero.arrays import Real, as_arrays, as_result
 from flapenv.aero.checks import record
 from flapenv.aero.coefficients import extended_lift_curve_slope, lift_curve_slope, translational_lift_constant
 from flapenv.aero.force_laws import BermanWangLaw, FittedLaw, ForceLaw, PlateLaw, PolhamusLaw, robofly
@@ -141,7 +141,8 @@ def induced_power_factor(case: HoverCase, model: HoverModel, flap_speed: Real, f
     """
     if not model.uses_k:
         return 1.0
-    k = case.wing_factor * induced.k_flap_unchecked(flap_amplitude)
+    _, wing_factor, k_flap = as_arrays(case.wing_factor, induced.k_flap_unchecked(flap_amplitude))
+    k = as_result(wing_factor * k_flap)
     return k * induced.k_tip(case.downwash_rate, flap_speed) if model.tip_loss == "stroke" else k
 
 

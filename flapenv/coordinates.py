@@ -1,5 +1,6 @@
 """Action coordinates: strokes of a box as points of the cube [-1, 1]^n, shared by environments and optimisers."""
 
+from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
@@ -84,7 +85,7 @@ class StrokeCoordinates:
             clipped = clipped | (xp.abs(values["frequency"] - frequency) > slack * frequency)
         return values, clipped
 
-    def encode(self, values: dict[str, np.ndarray], reference: StrokeReference) -> np.ndarray:
+    def encode(self, values: Mapping[str, Any], reference: StrokeReference) -> np.ndarray:
         """Points of the cube for strokes, the inverse of `decode` inside the box.
 
         Args:

@@ -1,0 +1,253 @@
+"""The equal-budget competition: optimisers and trained policies on the same wings, the same objective, the same count.
+
+Every optimiser gets the same number of wingbeats on every wing and seed; references are solved before the clock starts.
+A policy spends its wingbeats once, in training, and one more on each wing it is asked for.
+"""
+
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+from agents.budget import Budget, Trace
+from agents.comparison import Comparison
+from agents.competitors import COMPETITORS, run
+from agents.run_folder import CONFIG, POLICY, RESULTS, open_run_folder, versions, write_json
+from flapenv.aero.checks import record, require_count, require_name
+from flapenv.insects import INSECTS, Insect, as_insect, pick
+from flapenv.optimum import optimum
+from flapenv.problem import HoverProblem, as_problem
+from flapenv.tables import text_table
+from flapenv.wing_pool import wing_pool
+
+CHECKPOINTS = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
+"""Wingbeats at which gaps are read off."""
+SOLVED = 0.001
+"""A gap [-] that counts as solved, for the wingbeats and seconds it takes."""
+
+
+@record
+class CompetitionConfig:
+    """What is compared.
+
+    Attributes:
+        problem: by name, as a `HoverProblem`, or the dict of one.
+        insects: names or `Insect`s; those that cannot hover in the box are left out, and named.
+        wings: random wings of the test split beside them.
+        competitors: names of `COMPETITORS`.
+        wingbeats: budget of each search.
+        seeds: how many searches of each kind on each wing.
+        policies: run folders of trained policies.
+    """
+
+    problem: Any = "free-frequency"
+    insects: Sequence[Any] = INSECTS
+    wings: int = 0
+    competitors: Sequence[str] = tuple(COMPETITORS)
+    wingbeats: int = 10_000
+    seeds: int = 5
+    policies: Sequence[Path] = ()
+
+    def __post_init__(self) -> None:
+        """Resolve and check every field."""
+        object.__setattr__(self, "problem", as_problem(self.problem))
+        insects = [as_insect(insect) for insect in self.insects]
+        require_count("wings", self.wings, low=0)
+        if self.wings:
+            floor = 1.05 if self.problem.box.flap_amplitude_ratio is not None else None
+            pool = wing_pool(self.wings, split="test", min_weight_support=floor)
+            insects += [pick(pool, i) for i in range(self.wings)]
+        object.__setattr__(self, "insects", tuple(insects))
+        for name in self.competitors:
+            require_name("competitors", name, COMPETITORS)
+        require_count("wingbeats", self.wingbeats)
+        require_count("seeds", self.seeds)
+
+
+@record
+class PolicyScore:
+    """A trained policy on the same wings.
+
+    Attributes:
+        name: of its run folder.
+        wingbeats: it was trained with.
+        seconds: it was trained for.
+        gaps: on every wing [-].
+    """
+
+    name: str
+    wingbeats: int
+    seconds: float
+    gaps: np.ndarray
+
+
+@record
+class CompetitionResult:
+    """What came out.
+
+    Attributes:
+        config: what was compared.
+        insects: those that could hover.
+        left_out: names of those that could not.
+        traces: of every competitor, one for each insect and seed.
+        policies: the trained policies.
+    """
+
+    config: CompetitionConfig
+    insects: tuple[Insect, ...]
+    left_out: tuple[str, ...]
+    traces: dict[str, list[Trace]]
+    policies: list[PolicyScore]
+
+
+def compete(config: CompetitionConfig, *, progress: bool = True) -> CompetitionResult:
+    """Let every competitor search on every wing, and ask every policy.
+
+    Args:
+        config: what to compare.
+        progress: whether to show a progress bar.
+
+    Raises:
+        ValueError: if no insect can hover, or a policy belongs to another problem.
+        OSError: if a run folder cannot be read.
+    """
+    import torch
+
+    torch.set_num_threads(1)
+    feasible = tuple(insect for insect in config.insects if optimum(insect, config.problem).feasible)
+    left_out = tuple(insect.name for insect in config.insects if insect not in feasible)
+    if not feasible:
+        raise ValueError(f"insects = {', '.join(left_out)}: none can hover in {config.problem.name}")
+    policies = [_policy_score(Path(folder), feasible, config.problem) for folder in config.policies]
+    traces: dict[str, list[Trace]] = {name: [] for name in config.competitors}
+    total = len(feasible) * config.seeds * len(config.competitors)
+    with tqdm(total=total, disable=not progress, unit=" searches", file=sys.stderr) as bar:
+        for name in config.competitors:
+            for insect in feasible:
+                for seed in range(config.seeds):
+                    bar.set_postfix_str(f"{name}, {insect.name}")
+                    traces[name].append(run(name, Budget(insect, config.problem, config.wingbeats), seed).trace)
+                    bar.update()
+    return CompetitionResult(config=config, insects=feasible, left_out=left_out, traces=traces, policies=policies)
+
+
+def _policy_score(folder: Path, insects: tuple[Insect, ...], problem: HoverProblem) -> PolicyScore:
+    """A run folder's policy on the insects; the file is a pickle, opened only because it was asked for."""
+    from stable_baselines3 import PPO
+
+    if not (folder / POLICY).is_file():
+        raise FileNotFoundError(f"policy {folder} holds no {POLICY}; allowed: the folder of a training run")
+    trained = json.loads((folder / CONFIG).read_text(encoding="utf-8"))
+    if as_problem(trained["problem"]) != problem:
+        raise ValueError(f"policy {folder} was trained for {trained['problem']['name']}; allowed: {problem.name}")
+    results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
+    gaps = Comparison(insects, problem).gaps(PPO.load(folder / POLICY, device="cpu"))
+    return PolicyScore(
+        name=folder.name, wingbeats=int(results["wingbeats"]), seconds=float(results["seconds"]), gaps=gaps
+    )
+
+
+def checkpoints(config: CompetitionConfig) -> list[int]:
+    """Wingbeats at which gaps are read off, up to the budget."""
+    return [n for n in CHECKPOINTS if n < config.wingbeats] + [config.wingbeats]
+
+
+def quartiles(traces: Sequence[Trace], spent: float, *, of: str = "wingbeats") -> tuple[float, float, float]:
+    """First quartile, median and third quartile of the gaps after so many wingbeats or seconds [-]."""
+    gaps = sorted(trace.gap_at(spent, of=of) for trace in traces)
+    places = [round(share * (len(gaps) - 1)) for share in (0.25, 0.5, 0.75)]
+    low, middle, high = (gaps[place] for place in places)
+    return low, middle, high
+
+
+def median_to_solve(traces: Sequence[Trace], gap: float = SOLVED) -> tuple[float, float]:
+    """Median wingbeats and seconds until the gap was first at most `gap`; inf where half never got there."""
+    found = []
+    for trace in traces:
+        wingbeats = trace.first_below(gap)
+        seconds = trace.seconds[trace.wingbeats.index(wingbeats)] if wingbeats is not None else np.inf
+        found.append((np.inf if wingbeats is None else float(wingbeats), float(seconds)))
+    ordered = sorted(found)
+    return ordered[len(ordered) // 2]
+
+
+def competition_table(result: CompetitionResult) -> str:
+    """Gap against wingbeats, medians with quartiles, and what it takes to solve a wing."""
+    marks = checkpoints(result.config)
+    header = ("gap after wingbeats [%]", *(f"{n:,}" for n in marks), f"to {100 * SOLVED:g} %", "seconds")
+    rows: list[tuple[str, ...]] = [header]
+    for name, traces in result.traces.items():
+        cells = []
+        for mark in marks:
+            low, middle, high = quartiles(traces, mark)
+            cells.append(f"{_percent(middle)} [{_percent(low)}, {_percent(high)}]")
+        wingbeats, seconds = median_to_solve(traces)
+        solved = ("-", "-") if np.isinf(wingbeats) else (f"{wingbeats:,.0f}", f"{seconds:.2g}")
+        rows.append((name, *cells, *solved))
+    lines = [text_table(rows)]
+    for policy in result.policies:
+        low, middle, high = np.quantile(policy.gaps, [0.25, 0.5, 0.75], method="nearest")
+        lines.append(
+            f"policy {policy.name}: {_percent(middle)} [{_percent(low)}, {_percent(high)}] % with one wingbeat a wing, "
+            f"after {policy.wingbeats:,} wingbeats of training ({policy.seconds:.0f} s)"
+        )
+        lines += [f"  {line}" for line in break_even(result, policy)]
+    if result.left_out:
+        lines.append(f"left out, cannot hover in this box: {', '.join(result.left_out)}")
+    return "\n".join(lines)
+
+
+def break_even(result: CompetitionResult, policy: PolicyScore) -> list[str]:
+    """How many wings a policy must serve before its training is paid back, against every optimiser that gets as far."""
+    reached = float(np.median(policy.gaps))
+    lines = []
+    for name, traces in result.traces.items():
+        wingbeats, _ = median_to_solve(traces, reached)
+        if np.isfinite(wingbeats) and wingbeats > 1:
+            wings = policy.wingbeats / (wingbeats - 1)
+            lines.append(f"{name} gets there in {wingbeats:,.0f} wingbeats: training pays from {wings:,.0f} wings on")
+    return lines
+
+
+def _percent(gap: float) -> str:
+    """A gap as a short percentage."""
+    value = 100 * gap
+    if not np.isfinite(value):
+        return "-"
+    return f"{value:.0f}" if value >= 10 else f"{value:.2g}" if value >= 1e-4 else "<1e-4"
+
+
+def save(result: CompetitionResult, out: Path | None) -> Path:
+    """Keep traces, table and pictures in a new folder.
+
+    Args:
+        result: what came out.
+        out: the folder; see `open_run_folder`.
+
+    Returns:
+        The folder.
+    """
+    from agents.pictures import draw_competition
+
+    config = result.config
+    folder = open_run_folder(out, f"compare-{config.problem.name}")
+    write_json(
+        folder / RESULTS,
+        {
+            "problem": config.problem.to_dict(),
+            "insects": [insect.name for insect in result.insects],
+            "left_out": list(result.left_out),
+            "wingbeats": config.wingbeats,
+            "seeds": config.seeds,
+            "traces": {name: [vars(trace) for trace in traces] for name, traces in result.traces.items()},
+            "policies": [{**vars(policy), "gaps": policy.gaps.tolist()} for policy in result.policies],
+            "versions": versions(),
+        },
+    )
+    (folder / "table.txt").write_text(competition_table(result) + "\n", encoding="utf-8")
+    draw_competition(result).savefig(folder / "competition.png")
+    return folder
