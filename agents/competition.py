@@ -6,6 +6,7 @@ A policy spends its wingbeats once, in training, and one more on each wing it is
 
 import json
 import sys
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -118,7 +119,9 @@ def compete(config: CompetitionConfig, *, progress: bool = True) -> CompetitionR
     import torch
 
     torch.set_num_threads(1)
-    feasible = tuple(insect for insect in config.insects if optimum(insect, config.problem).feasible)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=".*outside the range of the lifting-line")  # random wings reach 2.6
+        feasible = tuple(insect for insect in config.insects if optimum(insect, config.problem).feasible)
     left_out = tuple(insect.name for insect in config.insects if insect not in feasible)
     if not feasible:
         raise ValueError(f"insects = {', '.join(left_out)}: none can hover in {config.problem.name}")

@@ -107,7 +107,9 @@ def draw_competition(result: CompetitionResult) -> "Figure":
         axes.grid(alpha=0.25)
         axes.label_outer()
     panels[0].set_ylabel("gap to the optimum [%]")
-    panels[0].legend(fontsize=8, frameon=False, loc="lower left")
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8, frameon=False
+    )
     wings = len(result.insects)
     figure.suptitle(
         f"{result.config.problem.name}: best stroke so far, median and quartiles over {wings} wings, "

@@ -150,13 +150,13 @@ def optimum(insect: Insect | str, problem: HoverProblem | str | None = None) -> 
     if not is_single(insect):
         raise TypeError("insect has array fields; allowed: one insect with scalar fields")
     problem.require_suitable(insect.name, insect.reference)
-    warn_of_aspect_ratio(insect.name, insect.wing.aspect_ratio, problem.model, stacklevel=3)
     return _solve(insect, problem)
 
 
 @functools.lru_cache(maxsize=1024)
 def _solve(insect: Insect, problem: HoverProblem) -> Optimum:
-    """Search, then verify."""
+    """Search, then verify; a warning about the wing comes once, as the answer is kept."""
+    warn_of_aspect_ratio(insect.name, insect.wing.aspect_ratio, problem.model, stacklevel=4)
     search = _Search(insect, problem)
     samples = search.samples()
     weight, power = search.evaluate(samples)

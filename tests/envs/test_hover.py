@@ -11,7 +11,7 @@ import pytest
 from conftest import yardstick_stroke
 from gymnasium.envs.registration import EnvSpec
 
-from flapenv import INSECTS, HoverProblem, Insect, Stroke, Wing, evaluate, load_insect, optimum
+from flapenv import INSECTS, PROBLEMS, HoverProblem, Insect, Stroke, Wing, evaluate, load_insect, optimum
 from flapenv.envs import HoverEnv, HoverVectorEnv
 
 ROBOT = Insect(
@@ -258,3 +258,18 @@ def test_whole_numbers_of_any_kind_are_seeds_and_nothing_else_is(seed: Any) -> N
         np.testing.assert_array_equal(first, env.reset(seed=3)[0])
         with pytest.raises(TypeError, match="seed = True"):
             env.reset(seed=True)
+
+
+@pytest.mark.filterwarnings("ignore:no stroke of the box carries the weight:UserWarning")
+@pytest.mark.parametrize("problem", PROBLEMS)
+def test_every_named_problem_is_an_environment_whose_best_action_has_no_gap(problem: str) -> None:
+    insect = "bumblebee"  # feasible in all, with a known wing mass
+    env = gym.make_vec("flapenv/Hover-v0", 2, insect=insect, problem=problem, dtype="float64")
+    assert env.single_observation_space.shape == ((7,) if problem == "fixed-frequency" else (6,))
+    env.reset(seed=0)
+    best = optimum(insect, problem)
+    action = env.unwrapped.coordinates.encode(vars(best.stroke), load_insect(insect).reference)
+    observations, rewards, *_, infos = env.step(np.tile(action, (2, 1)).astype(np.float32))
+    assert env.observation_space.contains(observations)
+    assert infos["optimality_gap"][0] == pytest.approx(0, abs=2e-5)
+    assert rewards[0] == pytest.approx(-best.specific_power / best.reference_power, abs=1e-4)
