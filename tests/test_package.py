@@ -24,6 +24,7 @@ LAYERS = (  # each may import itself and what stands after it
     "flapenv.problem_tables",
     "flapenv.wing_pool",
     "flapenv.many_optima",
+    "flapenv.shape_curve",
     "flapenv.optimum",
     "flapenv.coordinates",
     "flapenv.problem",
