@@ -78,7 +78,9 @@ def compare_parser() -> argparse.ArgumentParser:
     made.add_argument("--wingbeats", type=int, default=10_000, metavar="N", help="budget of a search (default 10,000)")
     made.add_argument("--seeds", type=int, default=5, metavar="N", help="searches of each kind a wing (default 5)")
     made.add_argument("--policy", type=Path, action="append", default=[], metavar="DIR", help="run folder; repeatable")
-    made.add_argument("--out", type=Path, metavar="DIR", help="folder, new or empty (default runs/compare-PROBLEM/)")
+    made.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder without a run in it (default runs/compare-PROBLEM/)"
+    )
     made.add_argument("--quiet", action="store_true", help="no progress bar")
     return made
 
@@ -87,6 +89,7 @@ def compare(arguments: list[str]) -> int:
     """Run the competition; 0 on success, 2 for bad input."""
     options = compare_parser().parse_args(arguments)
     from agents.competition import CompetitionConfig, compete, competition_table, save
+    from agents.run_folder import open_run_folder
 
     try:
         config = CompetitionConfig(
@@ -98,9 +101,11 @@ def compare(arguments: list[str]) -> int:
             seeds=options.seeds,
             policies=options.policy,
         )
+        folder = open_run_folder(options.out, f"compare-{config.problem.name}")
         result = compete(config, progress=not options.quiet)
         print(competition_table(result), flush=True)
-        print(f"kept in {save(result, options.out)}")
+        save(result, folder)
+        print(f"kept in {folder}")
     except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
         print(f"train.py compare: {mistake}", file=sys.stderr)
         return 2

@@ -13,6 +13,8 @@ from flapenv.objective import HoverObjective
 from flapenv.performance import hover_averages
 from flapenv.problem import HoverProblem
 
+CARRIED = 1e-4
+"""Weight support short of one by no more than this is feasible; what is missing is charged as in the environment."""
 GRADIENT_COST = 3
 """Wingbeats that one evaluation with its gradient counts: one forward, two more for the way back."""
 
@@ -28,7 +30,7 @@ class Trace:
     Attributes:
         wingbeats: spent at each improvement.
         seconds: spent at each improvement, of the clock that stands still while no budget runs.
-        gaps: best gap so far [-].
+        gaps: best feasible gap so far [-].
     """
 
     wingbeats: list[int] = field(default_factory=list)
@@ -49,8 +51,8 @@ class Budget:
     """The exact-penalty objective of one insect in the environment's action coordinates, counted.
 
     A point is an action in [-1, 1]^n. Every evaluation of one stroke on one wing counts one wingbeat, one with a
-    gradient `GRADIENT_COST`. The gap is the environment's: power over the optimum, minus one, plus the charge for
-    missing weight.
+    gradient `GRADIENT_COST`. What is written down is the best feasible gap so far: power over the optimum, minus
+    one, of strokes that carry the weight to 1e-4, with the environment's charge for what they miss.
     """
 
     def __init__(self, insect: Insect, problem: HoverProblem, wingbeats: int) -> None:
@@ -96,7 +98,7 @@ class Budget:
         self._spend(len(points))
         strokes, _ = self.coordinates.decode(points, self.insect.reference)
         score = self.objective.score(np.zeros(len(points), dtype=np.intp), strokes)
-        self._note(score.optimality_gap)
+        self._note(score.specific_power, score.weight_support)
         return score.weight_support, score.specific_power, -(score.power_term + score.lift_term)
 
     def cost(self, points: np.ndarray) -> np.ndarray:
@@ -110,7 +112,7 @@ class Budget:
         case = self.objective.cases.rows(np.zeros(1, dtype=np.intp))
         weight, power = hover_averages(case, self.problem.model, **strokes, nodes=self.objective.nodes)
         deficit = (1 - weight).clip(0)
-        self._note(as_numpy(power) / self.best.specific_power - 1 + self.objective.gap_charge[0] * as_numpy(deficit))
+        self._note(as_numpy(power), as_numpy(weight))
         return power / self.best.reference_power + float(self.objective.lift_penalty[0]) * deficit
 
     def _spend(self, wingbeats: int) -> None:
@@ -118,9 +120,11 @@ class Budget:
             raise BudgetSpentError
         self.spent += wingbeats
 
-    def _note(self, gaps: np.ndarray) -> None:
-        """Write an improvement down; NaN never is one."""
-        best = float(np.min(np.where(np.isfinite(gaps), gaps, np.inf)))
+    def _note(self, power: np.ndarray, weight: np.ndarray) -> None:
+        """Write an improvement down; NaN never is one, nor a stroke that drops the wing."""
+        carried = (weight >= 1 - CARRIED) & np.isfinite(power)
+        charge = self.objective.gap_charge[0] * np.maximum(0, 1 - weight)
+        best = float(np.min(np.where(carried, power / self.best.specific_power - 1 + charge, np.inf)))
         if best < (self.trace.gaps[-1] if self.trace.gaps else np.inf):
             self.trace.wingbeats.append(self.spent)
             self.trace.seconds.append(time.perf_counter() - self._started)

@@ -4,6 +4,7 @@ Every optimiser gets the same number of wingbeats on every wing and seed; refere
 A policy spends its wingbeats once, in training, and one more on each wing it is asked for.
 """
 
+import contextlib
 import json
 import sys
 import warnings
@@ -16,8 +17,8 @@ from tqdm import tqdm
 
 from agents.budget import Budget, Trace
 from agents.comparison import Comparison
-from agents.competitors import COMPETITORS, run
-from agents.run_folder import CONFIG, POLICY, RESULTS, open_run_folder, versions, write_json
+from agents.competitors import COMPETITORS, load_libraries, run
+from agents.run_folder import CONFIG, POLICY, RESULTS, versions, write_json
 from flapenv.aero.checks import record, require_count, require_name
 from flapenv.insects import INSECTS, Insect, as_insect, pick
 from flapenv.optimum import optimum
@@ -63,6 +64,10 @@ class CompetitionConfig:
             pool = wing_pool(self.wings, split="test", min_weight_support=floor)
             insects += [pick(pool, i) for i in range(self.wings)]
         object.__setattr__(self, "insects", tuple(insects))
+        if not self.insects:
+            raise ValueError("insects = [] and wings = 0 leave nothing to compare on; allowed: at least one")
+        if not self.competitors:
+            raise ValueError(f"competitors = [] is not allowed; allowed: some of {', '.join(COMPETITORS)}")
         for name in self.competitors:
             require_name("competitors", name, COMPETITORS)
         require_count("wingbeats", self.wingbeats)
@@ -106,7 +111,7 @@ class CompetitionResult:
 
 
 def compete(config: CompetitionConfig, *, progress: bool = True) -> CompetitionResult:
-    """Let every competitor search on every wing, and ask every policy.
+    """Let every competitor search on every wing, and ask every policy; Ctrl-C keeps the searches that have ended.
 
     Args:
         config: what to compare.
@@ -119,21 +124,31 @@ def compete(config: CompetitionConfig, *, progress: bool = True) -> CompetitionR
     import torch
 
     torch.set_num_threads(1)
+    load_libraries()
+    needs_mass = config.problem.model.accounting == "positive"
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=".*outside the range of the lifting-line")  # random wings reach 2.6
-        feasible = tuple(insect for insect in config.insects if optimum(insect, config.problem).feasible)
+        feasible = tuple(
+            insect
+            for insect in config.insects
+            if not (needs_mass and insect.wing.mass is None) and optimum(insect, config.problem).feasible
+        )
     left_out = tuple(insect.name for insect in config.insects if insect not in feasible)
     if not feasible:
         raise ValueError(f"insects = {', '.join(left_out)}: none can hover in {config.problem.name}")
     policies = [_policy_score(Path(folder), feasible, config.problem) for folder in config.policies]
     traces: dict[str, list[Trace]] = {name: [] for name in config.competitors}
     total = len(feasible) * config.seeds * len(config.competitors)
-    with tqdm(total=total, disable=not progress, unit=" searches", file=sys.stderr) as bar:
+    with (
+        tqdm(total=total, disable=not progress, unit=" searches", file=sys.stderr) as bar,
+        contextlib.suppress(KeyboardInterrupt),
+    ):
         for name in config.competitors:
-            for insect in feasible:
+            for number, insect in enumerate(feasible):
                 for seed in range(config.seeds):
                     bar.set_postfix_str(f"{name}, {insect.name}")
-                    traces[name].append(run(name, Budget(insect, config.problem, config.wingbeats), seed).trace)
+                    budget = Budget(insect, config.problem, config.wingbeats)
+                    traces[name].append(run(name, budget, (seed, number)).trace)
                     bar.update()
     return CompetitionResult(config=config, insects=feasible, left_out=left_out, traces=traces, policies=policies)
 
@@ -159,12 +174,16 @@ def checkpoints(config: CompetitionConfig) -> list[int]:
     return [n for n in CHECKPOINTS if n < config.wingbeats] + [config.wingbeats]
 
 
-def quartiles(traces: Sequence[Trace], spent: float, *, of: str = "wingbeats") -> tuple[float, float, float]:
-    """First quartile, median and third quartile of the gaps after so many wingbeats or seconds [-]."""
-    gaps = sorted(trace.gap_at(spent, of=of) for trace in traces)
-    places = [round(share * (len(gaps) - 1)) for share in (0.25, 0.5, 0.75)]
-    low, middle, high = (gaps[place] for place in places)
+def three_quartiles(values: Sequence[Any]) -> tuple[Any, Any, Any]:
+    """First quartile, median and third quartile, each one of the values, the larger of two that are as near."""
+    ordered = sorted(values)
+    low, middle, high = (ordered[int(share * (len(ordered) - 1) + 0.5)] for share in (0.25, 0.5, 0.75))
     return low, middle, high
+
+
+def quartiles(traces: Sequence[Trace], spent: float, *, of: str = "wingbeats") -> tuple[float, float, float]:
+    """Quartiles of the gaps after so many wingbeats or seconds [-]."""
+    return three_quartiles([trace.gap_at(spent, of=of) for trace in traces])
 
 
 def median_to_solve(traces: Sequence[Trace], gap: float = SOLVED) -> tuple[float, float]:
@@ -174,8 +193,8 @@ def median_to_solve(traces: Sequence[Trace], gap: float = SOLVED) -> tuple[float
         wingbeats = trace.first_below(gap)
         seconds = trace.seconds[trace.wingbeats.index(wingbeats)] if wingbeats is not None else np.inf
         found.append((np.inf if wingbeats is None else float(wingbeats), float(seconds)))
-    ordered = sorted(found)
-    return ordered[len(ordered) // 2]
+    _, middle, _ = three_quartiles(found)
+    return middle
 
 
 def competition_table(result: CompetitionResult) -> str:
@@ -184,6 +203,8 @@ def competition_table(result: CompetitionResult) -> str:
     header = ("gap after wingbeats [%]", *(f"{n:,}" for n in marks), f"to {100 * SOLVED:g} %", "seconds")
     rows: list[tuple[str, ...]] = [header]
     for name, traces in result.traces.items():
+        if not traces:
+            continue
         cells = []
         for mark in marks:
             low, middle, high = quartiles(traces, mark)
@@ -193,23 +214,24 @@ def competition_table(result: CompetitionResult) -> str:
         rows.append((name, *cells, *solved))
     lines = [text_table(rows)]
     for policy in result.policies:
-        low, middle, high = np.quantile(policy.gaps, [0.25, 0.5, 0.75], method="nearest")
+        low, middle, high = three_quartiles(policy.gaps.tolist())
         lines.append(
             f"policy {policy.name}: {_percent(middle)} [{_percent(low)}, {_percent(high)}] % with one wingbeat a wing, "
-            f"after {policy.wingbeats:,} wingbeats of training ({policy.seconds:.0f} s)"
+            f"after {policy.wingbeats:,} wingbeats of training ({policy.seconds:.0f} s), "
+            f"{policy.wingbeats / len(result.insects) + 1:,.0f} a wing over the {len(result.insects)} here"
         )
         lines += [f"  {line}" for line in break_even(result, policy)]
     if result.left_out:
-        lines.append(f"left out, cannot hover in this box: {', '.join(result.left_out)}")
+        lines.append(f"left out, cannot hover in this box or lack a wing mass: {', '.join(result.left_out)}")
     return "\n".join(lines)
 
 
 def break_even(result: CompetitionResult, policy: PolicyScore) -> list[str]:
     """How many wings a policy must serve before its training is paid back, against every optimiser that gets as far."""
-    reached = float(np.median(policy.gaps))
+    _, reached, _ = three_quartiles(policy.gaps.tolist())
     lines = []
     for name, traces in result.traces.items():
-        wingbeats, _ = median_to_solve(traces, reached)
+        wingbeats, _ = median_to_solve(traces, reached) if traces else (np.inf, np.inf)
         if np.isfinite(wingbeats) and wingbeats > 1:
             wings = policy.wingbeats / (wingbeats - 1)
             lines.append(f"{name} gets there in {wingbeats:,.0f} wingbeats: training pays from {wings:,.0f} wings on")
@@ -224,20 +246,16 @@ def _percent(gap: float) -> str:
     return f"{value:.0f}" if value >= 10 else f"{value:.2g}" if value >= 1e-4 else "<1e-4"
 
 
-def save(result: CompetitionResult, out: Path | None) -> Path:
-    """Keep traces, table and pictures in a new folder.
+def save(result: CompetitionResult, folder: Path) -> None:
+    """Keep traces, table and picture.
 
     Args:
         result: what came out.
-        out: the folder; see `open_run_folder`.
-
-    Returns:
-        The folder.
+        folder: there already, of `open_run_folder`.
     """
     from agents.pictures import draw_competition
 
     config = result.config
-    folder = open_run_folder(out, f"compare-{config.problem.name}")
     write_json(
         folder / RESULTS,
         {
@@ -253,4 +271,3 @@ def save(result: CompetitionResult, out: Path | None) -> Path:
     )
     (folder / "table.txt").write_text(competition_table(result) + "\n", encoding="utf-8")
     draw_competition(result).savefig(folder / "competition.png")
-    return folder

@@ -8,7 +8,7 @@ libraries' own but for what is said here.
 import contextlib
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -143,17 +143,32 @@ COMPETITORS: dict[str, Competitor] = {
 """By name, as tables and pictures call them."""
 
 
-def run(name: str, budget: Budget, seed: int) -> Budget:
+def load_libraries() -> None:
+    """Import what the competitors use, so that no search pays for it."""
+    import cma
+    import scipy.optimize
+    import torch
+
+    assert cma
+    assert scipy.optimize
+    assert torch
+
+
+def run(name: str, budget: Budget, seed: int | Sequence[int]) -> Budget:
     """Let a competitor spend a budget.
 
     Args:
         name: of `COMPETITORS`.
         budget: a fresh one.
-        seed: of its draws.
+        seed: of its draws, one number or several.
 
     Returns:
         The budget, spent, with its trace.
     """
+    if not budget.size:  # nothing to choose
+        budget.evaluate(np.zeros((1, 0)))
+        return budget
+    numbers = [seed] if isinstance(seed, int) else list(seed)
     with contextlib.suppress(BudgetSpentError):
-        COMPETITORS[name](budget, np.random.default_rng([seed, list(COMPETITORS).index(name)]))
+        COMPETITORS[name](budget, np.random.default_rng([*numbers, list(COMPETITORS).index(name)]))
     return budget

@@ -86,11 +86,14 @@ def draw_competition(result: CompetitionResult) -> "Figure":
     figure = Figure(figsize=(10.0, 4.6), dpi=100, layout="constrained")
     panels = figure.subplots(1, 2, sharey=True)
     ends = {"wingbeats": float(result.config.wingbeats), "seconds": 0.0}
-    ends["seconds"] = max(trace.seconds[-1] for traces in result.traces.values() for trace in traces if trace.seconds)
+    seen_last = [trace.seconds[-1] for traces in result.traces.values() for trace in traces if trace.seconds]
+    ends["seconds"] = max(seen_last, default=1.0)
     starts = {"wingbeats": 1.0, "seconds": 1e-3}
     for axes, of in zip(panels, ("wingbeats", "seconds"), strict=True):
         grid = np.geomspace(starts[of], max(ends[of], 2 * starts[of]), 120)
         for (name, traces), colour, dash in zip(result.traces.items(), COLOURS, DASHES, strict=False):
+            if not traces:
+                continue
             low, middle, high = (
                 100 * np.clip(column, LEAST_GAP / 1e4, None)
                 for column in np.transpose([quartiles(traces, spent, of=of) for spent in grid])

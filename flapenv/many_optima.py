@@ -34,6 +34,10 @@ GRID = 160
 """Points of the curve."""
 
 
+SLACK = 1e-4
+"""Weight support carried beyond one by more than this costs nothing."""
+
+
 @record
 class ManyOptima:
     """The least power of many wings; arrays of shape (n,).
@@ -89,10 +93,12 @@ def many_optima(insects: Insect, problem: HoverProblem | str | None = None) -> M
             on_curve, strokes, multiplier = _fixed(case, problem, count)
     elif shared and problem.box.is_free("frequency"):
         on_curve, strokes, multiplier = _free(case, problem, count)
+    strokes = {name: np.array(np.broadcast_to(values, (count,)), dtype=float) for name, values in strokes.items()}
     if np.any(on_curve):
         weight, power = hover_averages(
             case, problem.model, **strokes, nodes=problem.box.time_nodes(tolerance=TOLERANCE)
         )
+    multiplier = np.where(on_curve & (weight > 1 + SLACK), 0.0, multiplier)
     if shared:
         largest = largest_weight_support(insects, problem)
     for i in np.flatnonzero(~on_curve):
@@ -219,8 +225,9 @@ def _fixed(case: HoverCase, problem: HoverProblem, count: int) -> tuple[np.ndarr
 
 def _count(insects: Insect) -> int:
     """How many insects array fields hold."""
-    fields = (insects.mass, insects.wing.length, insects.wing.mean_chord, insects.stroke.frequency)
-    shape = np.broadcast_shapes(*(np.shape(field) for field in fields))
+    parts = insects, insects.wing, insects.stroke, insects.k_table, insects.force_constants
+    fields = [value for part in parts if part is not None for value in vars(part).values()]
+    shape = np.broadcast_shapes(*(value.shape for value in fields if isinstance(value, np.ndarray)))
     if len(shape) != 1:
         raise TypeError(f"insects have fields of shape {shape}; allowed: one axis, (n,)")
     return int(shape[0])

@@ -31,6 +31,8 @@ ORACLE_TOLERANCE = 1e-5
 """Relative difference up to which the refined oracle confirms an optimum."""
 ROUGH_TOLERANCE = 2e-4
 """The same for coefficients that jump or have corners, and for power that is only paid where positive."""
+LEAST_SCALE = 1e-6
+"""Weight supports below this are as good as none."""
 WEIGHT_TOLERANCE = 1e-7
 """Weight support short of one by less than this counts as carried."""
 
@@ -265,13 +267,17 @@ class _Search:
             return np.zeros(0)
         from scipy.optimize import minimize
 
+        scale = max(
+            float(np.max(np.abs(self.evaluate(starts)[0]))), LEAST_SCALE
+        )  # of Λ, so that tolerances mean the same
+
         def value(point: np.ndarray) -> float:
             weight, power, _, _ = self.local(point)
-            return math.log(power) if goal == "power" else -weight
+            return math.log(power) if goal == "power" else -weight / scale
 
         def slope(point: np.ndarray) -> np.ndarray:
             _, power, by_weight, by_power = self.local(point)
-            return by_power / power if goal == "power" else -by_weight
+            return by_power / power if goal == "power" else -by_weight / scale
 
         hover = {
             "type": "ineq",

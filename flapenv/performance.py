@@ -3,8 +3,10 @@
 import math
 from typing import Any
 
+import numpy as np
+
 from flapenv.aero import induced
-from flapenv.aero.arrays import Real, as_arrays, as_result
+from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result
 from flapenv.aero.checks import record
 from flapenv.aero.paid_power import positive_power
 from flapenv.aero.stroke import Stroke
@@ -148,6 +150,11 @@ def checked(insect: Insect | str, stroke: Stroke | None, model: dict[str, Any]) 
     stroke = insect.stroke if stroke is None else stroke
     if not isinstance(stroke, Stroke):
         raise TypeError(f"stroke = {stroke!r} is not allowed; allowed: a Stroke, or None for the insect's own")
+    if options.accounting == "positive" and np.any(as_numpy(stroke.flap_shape) == 1):
+        raise ValueError(
+            "flap_shape = 1 is not allowed with accounting = 'positive': a triangle's acceleration is infinite at its "
+            "corners; allowed: below 1"
+        )
     if options.uses_k:
         induced.k_flap(stroke.flap_amplitude)  # refuses amplitudes that the model has no answer for
     return insect, stroke, options

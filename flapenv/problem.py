@@ -151,6 +151,11 @@ class HoverProblem:
         object.__setattr__(self, "reward_floor", floor)
         if self.box.flap_amplitude is not None:
             self._require_amplitude("upper bound of flap_amplitude", self.box.flap_amplitude[1])
+        if self.model.accounting == "positive" and self.box.flap_shape[1] == 1:
+            raise ValueError(
+                "upper bound of flap_shape = 1 is not allowed with accounting = 'positive': a triangle's acceleration "
+                "is infinite at its corners; allowed: below 1"
+            )
         if self.name is None:
             rest = (field for field in fields(self) if field.name not in ("name", "box", "model"))
             same = self.box == StrokeBox() and self.model == HoverModel()

@@ -60,6 +60,8 @@ class Shapes:
             ratio: e.
             needed: s.
         """
+        if not len(self.coordinates):
+            return np.zeros(0)
         from scipy.optimize import minimize
 
         offsets = STEP * np.eye(len(self.coordinates))
@@ -172,6 +174,8 @@ def neighbours(grid: np.ndarray, points: np.ndarray, numbers: np.ndarray) -> lis
 
 def cost_of_lift(shapes: Shapes, points: np.ndarray, ratio: np.ndarray) -> np.ndarray:
     """d(S + e K/2)/dL at constrained optima, by stationarity along the axes that lie on no face, shape (n wings,)."""
+    if not points.shape[1]:
+        return np.full(len(points), np.inf)
     lifts, powers = [], []
     for axis in np.eye(points.shape[1]):
         ahead, behind = np.clip(points + STEP * axis, -1, 1), np.clip(points - STEP * axis, -1, 1)

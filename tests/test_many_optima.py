@@ -137,3 +137,38 @@ def test_a_pool_for_fixed_frequencies_can_hover_with_a_margin() -> None:
 def test_bad_pools_are_named(arguments: dict[str, object], kind: type[Exception], said: str) -> None:
     with pytest.raises(kind, match=said):
         wing_pool(**arguments)
+
+
+@pytest.mark.parametrize(
+    "fixed", [{"flap_shape": 0.9}, {"flap_shape": 0.9, "pitch_shape": 5.0, "pitch_amplitude": 1.0, "pitch_phase": 1.5}]
+)
+def test_fixed_waveforms_and_wings_that_want_less_than_their_lowest_frequency_are_served(
+    fixed: dict[str, float],
+) -> None:
+    for ratio in ((0.05, 0.3), (0.5, 1.5), (1.2, 3.0)):
+        problem, pool = HoverProblem(box={"frequency_ratio": ratio, **fixed}), wing_pool(3, seed=2)
+        together = many_optima(pool, problem)
+        for i in range(3):
+            alone = optimum(pick(pool, i), problem)
+            assert together.feasible[i] == alone.feasible
+            assert together.specific_power[i] == pytest.approx(alone.specific_power, rel=1e-6)
+
+
+def test_lift_that_is_more_than_enough_costs_nothing() -> None:
+    box = {"frequency_ratio": 1.3, "flap_amplitude": math.radians(75), "pitch_amplitude": (0.47, 0.85)}
+    together = many_optima(wing_pool(3), HoverProblem(box=box))
+    for i in range(3):
+        alone = optimum(pick(wing_pool(3), i), HoverProblem(box=box))
+        assert alone.multiplier == 0
+        assert together.multiplier[i] == 0
+        assert together.specific_power[i] == pytest.approx(alone.specific_power, rel=1e-6)
+
+
+def test_one_array_field_makes_many() -> None:
+    hawkmoth = load_insect("hawkmoth")
+    wide = dataclasses.replace(
+        hawkmoth, stroke=dataclasses.replace(hawkmoth.stroke, flap_amplitude=np.array([0.9, 1.2]))
+    )
+    assert many_optima(wide, "fixed-frequency").feasible.tolist() == [False, True]
+    slim = dataclasses.replace(hawkmoth, wing=dataclasses.replace(hawkmoth.wing, r1_hat=np.array([0.46, 0.5, 0.54])))
+    assert many_optima(slim).specific_power.shape == (3,)

@@ -78,11 +78,12 @@ def test_the_papers_triangle_is_not_the_best_stroke_at_fixed_frequency(name: str
 def test_who_cannot_hover_at_fixed_frequency_is_told_with_the_margin() -> None:
     margins = {name: optimum(name, B) for name in ("fruitfly", "ladybird", "hawkmoth")}
     assert not margins["fruitfly"].feasible
-    assert margins["fruitfly"].max_weight_support == pytest.approx(0.976, abs=3e-3)
+    # 0.976, 0.954 and 1.013 with Table 2's last column for k; k_ind k_tip (its fourth) times √(90°/φmax) is used here
+    assert margins["fruitfly"].max_weight_support == pytest.approx(0.9785, abs=5e-4)
     assert not margins["ladybird"].feasible
-    assert margins["ladybird"].max_weight_support == pytest.approx(0.954, abs=1e-3)
+    assert margins["ladybird"].max_weight_support == pytest.approx(0.9535, abs=5e-4)
     assert margins["hawkmoth"].feasible
-    assert margins["hawkmoth"].max_weight_support == pytest.approx(1.013, abs=1e-3)
+    assert margins["hawkmoth"].max_weight_support == pytest.approx(1.0138, abs=5e-4)
     symmetric = dataclasses.replace(B, name=None, model=dataclasses.replace(B.model, edge_correction="symmetric"))
     assert optimum("hawkmoth", symmetric).max_weight_support == pytest.approx(1.003, abs=1e-3)
     with pytest.raises(ValueError, match=r"fruitfly cannot hover in fixed-frequency .*largest weight support 0.97"):
@@ -93,15 +94,25 @@ def test_who_cannot_hover_at_fixed_frequency_is_told_with_the_margin() -> None:
 @pytest.mark.parametrize(("insect", "problem"), [("bumblebee", B), ("hawkmoth", B), ("hawkmoth", D)])
 def test_other_optimisers_find_the_same_stroke_to_1e_6(name: str, insect: str, problem: HoverProblem) -> None:
     budget = run(name, Budget(load_insect(insect), problem, 12_000 if problem is B else 25_000), seed=1)
-    assert abs(budget.trace.gaps[-1]) < (1e-6 if problem is B else 1e-5)  # D's power has corners
+    assert abs(budget.trace.gaps[-1]) < 1e-6
 
 
-@pytest.mark.parametrize("name", ["fruitfly", "bumblebee", "hawkmoth"])
+WITHOUT_SPRINGS = {
+    "fruitfly": (0.982, 4.76, 12.716),
+    "bumblebee": (0.983, 4.52, 33.071),
+    "hawkmoth": (0.980, 3.82, 26.664),
+}
+"""Cφ, Cθ and P* [W/kg], found by three optimisers (see above) and confirmed by the blade element."""
+
+
+@pytest.mark.parametrize("name", WITHOUT_SPRINGS)
 def test_without_springs_the_best_waveforms_lie_inside_and_springs_would_cut_the_bill(name: str) -> None:
     best = optimum(name, D)
     assert best.lower_bound is None
-    assert 0.95 < best.stroke.flap_shape < 0.985
-    assert 3 < best.stroke.pitch_shape < 6
+    flap_shape, pitch_shape, power = WITHOUT_SPRINGS[name]
+    assert best.stroke.flap_shape == pytest.approx(flap_shape, abs=1e-3)
+    assert best.stroke.pitch_shape == pytest.approx(pitch_shape, rel=1e-2)
+    assert best.specific_power == pytest.approx(power, rel=1e-4)
     assert {("flap_shape", "upper"), ("pitch_shape", "upper")}.isdisjoint(best.active_bounds)
     elastic = optimum(name)
     own = evaluate(name, elastic.stroke, accounting="positive").specific_power
@@ -192,18 +203,28 @@ def test_a_budget_counts_every_wing_and_three_for_a_gradient_and_ignores_nan() -
     budget.differentiable_cost(torch.zeros((4, 6), dtype=torch.float64, requires_grad=True)).sum().backward()
     assert budget.spent == 17
     before = list(budget.trace.gaps)
-    budget._note(np.array([np.nan, np.inf]))
+    budget._note(np.array([np.nan, np.inf, 1.0]), np.array([1.0, 1.0, 0.999]))  # NaN, inf, and one that drops the wing
     assert budget.trace.gaps == before
     cost = budget.cost(np.full((1, 6), 0.3))[0]
     same = budget.differentiable_cost(torch.full((1, 6), 0.3, dtype=torch.float64, requires_grad=True))
     assert float(same.detach()[0]) == pytest.approx(float(cost), rel=1e-9)
 
 
+def test_a_box_with_nothing_to_choose_is_evaluated_once() -> None:
+    best = optimum("hawkmoth").stroke
+    fixed = {name: float(value) for name, value in vars(best).items()}
+    problem = HoverProblem(box={**fixed, "frequency": fixed["frequency"] * 1.0001})
+    for name in COMPETITORS:
+        budget = run(name, Budget(HAWKMOTH, problem, 50), seed=0)
+        assert budget.spent == 1
+        assert budget.trace.gaps[-1] == pytest.approx(0, abs=1e-6)
+
+
 def test_the_corner_solves_problem_a_in_three_wingbeats_and_no_other() -> None:
     solved = run("corner", Budget(HAWKMOTH, PROBLEMS["free-frequency"], 10), seed=0)
     assert solved.spent == 3
     assert solved.trace.gaps[-1] < 1e-6
-    assert run("corner", Budget(HAWKMOTH, C, 10), seed=0).trace.gaps[-1] > 0.5
+    assert run("corner", Budget(HAWKMOTH, C, 10), seed=0).trace.gap_at(10) > 0.5
 
 
 def test_sensitivity_is_the_price_of_each_bound() -> None:
@@ -214,3 +235,36 @@ def test_sensitivity_is_the_price_of_each_bound() -> None:
     assert best.sensitivity["pitch_phase"] == pytest.approx(0, abs=1e-4)
     assert set(best.sensitivity) == set(vars(Stroke(frequency=1.0, flap_amplitude=1.0, pitch_amplitude=1.0)))
     assert "blade element differs by" in best.verification
+
+
+def test_the_triangle_has_no_power_without_springs() -> None:
+    triangle = dataclasses.replace(HAWKMOTH.stroke, flap_shape=1.0)
+    with pytest.raises(ValueError, match="flap_shape = 1 is not allowed with accounting = 'positive'"):
+        evaluate(HAWKMOTH, triangle, accounting="positive")
+    with pytest.raises(ValueError, match="upper bound of flap_shape = 1 is not allowed with accounting"):
+        HoverProblem(box={"flap_shape": (0.1, 1.0)}, model={"accounting": "positive"})
+    sharp = [
+        evaluate(
+            HAWKMOTH, dataclasses.replace(HAWKMOTH.stroke, flap_shape=1 - rest), accounting="positive"
+        ).specific_power
+        for rest in (1e-2, 1e-4, 1e-8)
+    ]
+    assert sharp == sorted(sharp)  # impulses at the reversals cost more the sharper they are
+
+
+def test_the_largest_lift_of_a_wide_box_is_found_whatever_its_scale() -> None:
+    from flapenv.insects import pick
+    from flapenv.many_optima import largest_weight_support
+    from flapenv.wing_pool import wing_pool
+
+    box = {
+        "frequency": (19.84, 465.0),
+        "flap_amplitude_ratio": 1.0,
+        "flap_shape": (0.0402, 0.7429),
+        "pitch_amplitude": 1.3784,
+        "pitch_phase": (0.9188, 1.7043),
+    }
+    pool, problem = wing_pool(3, seed=1, split="test"), HoverProblem(box=box)
+    expected = largest_weight_support(pool, problem)
+    for i in (0, 2):
+        assert optimum(pick(pool, i), problem).max_weight_support == pytest.approx(expected[i], rel=1e-6)
