@@ -6,6 +6,9 @@ import math
 import numpy as np
 import pytest
 import torch
+from conftest import strokes
+from hypothesis import given
+from hypothesis import strategies as st
 
 from agents.budget import Budget
 from agents.competitors import COMPETITORS, run
@@ -123,6 +126,17 @@ def test_without_springs_the_best_waveforms_lie_inside_and_springs_would_cut_the
 def test_a_wing_without_mass_has_no_inertial_problem() -> None:
     with pytest.raises(ValueError, match="accounting = 'positive' needs the wing mass of cranefly"):
         optimum("cranefly", D)
+
+
+@given(strokes(sharpest_flap=1.0, sharpest_pitch=100.0), st.floats(0.02, math.radians(85)))
+def test_no_stroke_at_the_own_frequency_and_amplitude_goes_below_bs_bound(stroke: Stroke, pitch: float) -> None:
+    own = HAWKMOTH.stroke
+    at_own = dataclasses.replace(
+        stroke, frequency=own.frequency, flap_amplitude=own.flap_amplitude, pitch_amplitude=pitch
+    )
+    ours = evaluate(HAWKMOTH, at_own)
+    bound = float(lower_bound(hover_case(HAWKMOTH, B.model), B))
+    assert ours.specific_power >= bound * max(ours.weight_support, 0) ** 2 * (1 - 1e-6)  # P* goes with Λ² there
 
 
 def free_waveform(raw: torch.Tensor, limit: float) -> tuple[torch.Tensor, torch.Tensor]:
