@@ -25,9 +25,10 @@ from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.case import HoverCase, hover_case, lift_constant
 from flapenv.insects import Insect, pick
-from flapenv.optimum import WEIGHT_TOLERANCE, lower_bound, optimum
+from flapenv.optimum import lower_bound, optimum
 from flapenv.performance import hover_averages
 from flapenv.problem import HoverProblem, as_problem
+from flapenv.search import WEIGHT_TOLERANCE
 from flapenv.shape_curve import TOLERANCE, cost_of_lift, curve, largest_lift, lifting, neighbours, shapes_of
 
 GRID = 160

@@ -26,6 +26,7 @@ LAYERS = (  # each may import itself and what stands after it
     "flapenv.many_optima",
     "flapenv.shape_curve",
     "flapenv.optimum",
+    "flapenv.search",
     "flapenv.coordinates",
     "flapenv.problem",
     "flapenv.drawing",

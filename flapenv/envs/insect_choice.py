@@ -1,0 +1,53 @@
+"""Which insects an environment draws from."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from flapenv.aero.checks import require_name
+from flapenv.insects import INSECTS, Insect, as_insect, load_insect
+from flapenv.optimum import optimum
+from flapenv.problem import HoverProblem
+
+InsectChoice = str | Insect | Mapping[str, Any] | Sequence[Any]
+
+
+def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infeasible: bool) -> tuple[Insect, ...]:
+    """The insects an environment draws from, with a warning about every one that cannot hover in the box.
+
+    Args:
+        choice: "all", a name of `INSECTS`, an `Insect` or the dict of one, or several of these.
+        problem: the problem, which decides about feasibility.
+        include_infeasible: whether "all" keeps the insects that no stroke of the box can lift.
+
+    Raises:
+        TypeError: for a choice of another kind.
+        ValueError: for an unknown name, no insect at all, or "all" where none is feasible.
+    """
+    if isinstance(choice, str):
+        require_name("insect", choice, ("all", *INSECTS))
+    everyone = choice == "all"
+    if everyone:
+        insects = tuple(load_insect(name) for name in INSECTS)
+    elif isinstance(choice, Sequence) and not isinstance(choice, str):
+        insects = tuple(as_insect(one) for one in choice)
+    else:
+        insects = (as_insect(choice),)
+    if not insects:
+        raise ValueError("insect = [] is not allowed; allowed: at least one insect")
+    names = [one.name for one in insects]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"insect holds {names.count(name)} called {name!r}; allowed: each name once")
+    infeasible = {insect.name: optimum(insect, problem) for insect in insects}
+    infeasible = {name: best for name, best in infeasible.items() if not best.feasible}
+    if infeasible:
+        margins = ", ".join(f"{name} (largest {best.max_weight_support:.3f})" for name, best in infeasible.items())
+        dropped = everyone and not include_infeasible
+        fate = "left out" if dropped else "kept; the aim is their largest weight support"
+        warnings.warn(f"no stroke of the box carries the weight of {margins}: {fate}", stacklevel=3)
+        if dropped:
+            insects = tuple(insect for insect in insects if insect.name not in infeasible)
+    if not insects:
+        raise ValueError("insect = 'all' leaves no insect: none can hover in the box; see include_infeasible=True")
+    return insects
