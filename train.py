@@ -88,7 +88,7 @@ def compare_parser() -> argparse.ArgumentParser:
 def compare(arguments: list[str]) -> int:
     """Run the competition; 0 on success, 2 for bad input."""
     options = compare_parser().parse_args(arguments)
-    from agents.competition import CompetitionConfig, compete, competition_table, save
+    from agents.competition import CompetitionConfig, compete, competition_table, save, wing_table
     from agents.run_folder import open_run_folder
 
     try:
@@ -103,7 +103,7 @@ def compare(arguments: list[str]) -> int:
         )
         folder = open_run_folder(options.out, f"compare-{config.problem.name}")
         result = compete(config, progress=not options.quiet)
-        print(competition_table(result), flush=True)
+        print(f"{competition_table(result)}\n\n{wing_table(result)}", flush=True)
         save(result, folder)
         print(f"kept in {folder}")
     except (ValueError, TypeError, OSError, ArithmeticError) as mistake:

@@ -226,6 +226,22 @@ def competition_table(result: CompetitionResult) -> str:
     return "\n".join(lines)
 
 
+def wing_table(result: CompetitionResult) -> str:
+    """Median wingbeats to solve every wing apart, and the policies' gaps on it."""
+    names = [insect.name for insect in result.insects]
+    rows: list[tuple[str, ...]] = [(f"wingbeats to {100 * SOLVED:g} %", *names)]
+    seeds = result.config.seeds
+    for name, traces in result.traces.items():
+        cells = []
+        for number in range(len(names)):
+            own = traces[number * seeds : (number + 1) * seeds]
+            wingbeats = median_to_solve(own)[0] if own else np.inf
+            cells.append("-" if np.isinf(wingbeats) else f"{wingbeats:,.0f}")
+        rows.append((name, *cells))
+    rows += [(f"gap of {policy.name} [%]", *(_percent(gap) for gap in policy.gaps)) for policy in result.policies]
+    return text_table(rows)
+
+
 def break_even(result: CompetitionResult, policy: PolicyScore) -> list[str]:
     """How many wings a policy must serve before its training is paid back, against every optimiser that gets as far."""
     _, reached, _ = three_quartiles(policy.gaps.tolist())
@@ -269,5 +285,5 @@ def save(result: CompetitionResult, folder: Path) -> None:
             "versions": versions(),
         },
     )
-    (folder / "table.txt").write_text(competition_table(result) + "\n", encoding="utf-8")
+    (folder / "table.txt").write_text(f"{competition_table(result)}\n\n{wing_table(result)}\n", encoding="utf-8")
     draw_competition(result).savefig(folder / "competition.png")

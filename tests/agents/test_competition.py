@@ -41,7 +41,15 @@ def test_the_command_compares_a_policy_with_optimisers_and_keeps_everything(
     out = tmp_path / "out"
     assert command.main([*arguments, "--policy", str(tmp_path / "run"), "--out", str(out)]) == 0
     printed = capsys.readouterr().out
-    for said in ("corner", "SLSQP", "policy run:", "one wingbeat a wing", "corner gets there in"):
+    for said in (
+        "wingbeats to 0.1 %  hawkmoth",
+        "gap of run [%]",
+        "corner",
+        "SLSQP",
+        "policy run:",
+        "one wingbeat a wing",
+        "corner gets there in",
+    ):
         assert said in printed
     kept = json.loads((out / "results.json").read_text(encoding="utf-8"))
     assert set(kept["traces"]) == set(CompetitionConfig().competitors)
