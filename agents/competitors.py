@@ -6,6 +6,7 @@ libraries' own but for what is said here.
 """
 
 import contextlib
+import importlib
 import math
 import warnings
 from collections.abc import Callable, Sequence
@@ -145,13 +146,8 @@ COMPETITORS: dict[str, Competitor] = {
 
 def load_libraries() -> None:
     """Import what the competitors use, so that no search pays for it."""
-    import cma
-    import scipy.optimize
-    import torch
-
-    assert cma
-    assert scipy.optimize
-    assert torch
+    for name in ("cma", "scipy.optimize", "torch"):
+        importlib.import_module(name)
 
 
 def run(name: str, budget: Budget, seed: int | Sequence[int]) -> Budget:

@@ -103,7 +103,7 @@ def many_optima(insects: Insect, problem: HoverProblem | str | None = None) -> M
     if shared:
         largest = largest_weight_support(insects, problem)
     for i in np.flatnonzero(~on_curve):
-        best = optimum(_one(insects, int(i)), problem)
+        best = optimum(pick(insects, int(i)), problem)
         weight[i], power[i], largest[i] = best.weight_support, best.specific_power, best.max_weight_support
         multiplier[i] = best.multiplier
         for name, values in strokes.items():
@@ -232,8 +232,3 @@ def _count(insects: Insect) -> int:
     if len(shape) != 1:
         raise TypeError(f"insects have fields of shape {shape}; allowed: one axis, (n,)")
     return int(shape[0])
-
-
-def _one(insects: Insect, i: int) -> Insect:
-    """Insect number i alone."""
-    return pick(insects, i)
