@@ -1,8 +1,10 @@
 """What every batched environment of the family shares: autoreset written once, reset masks, action checks, infos."""
 
+import inspect
 from abc import abstractmethod
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 from gymnasium import error, spaces
 from gymnasium.vector import AutoresetMode, VectorEnv
@@ -86,6 +88,23 @@ def checked_actions(field: str, actions: Any, shape: tuple[int, ...] | None) -> 
     return np.clip(array, -2, 2).astype(np.float32)  # beyond ±1 still shows as clipped, and no cast overflows
 
 
+def arguments_of(environment: type) -> tuple[str, ...]:
+    """Names of the arguments of an environment's constructor."""
+    names = inspect.signature(environment).parameters
+    return tuple(name for name, parameter in names.items() if parameter.kind is not parameter.VAR_KEYWORD)
+
+
+def refuse_unknown(unknown: dict[str, Any], environment: type, *, hidden: tuple[str, ...] = ()) -> None:
+    """Name an argument that does not exist, and those that do.
+
+    Raises:
+        TypeError: for the first of `unknown`.
+    """
+    known = [name for name in arguments_of(environment) if name not in hidden]
+    for name, value in unknown.items():
+        raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
+
+
 class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     """A vector environment that computes all of its rows at once.
 
@@ -134,6 +153,17 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     @abstractmethod
     def _observe(self) -> np.ndarray:
         """What is seen now, a fresh array."""
+
+    @abstractmethod
+    def _picture(self, row: int) -> np.ndarray:
+        """The last wingbeat of a row, (height, width, 3) of uint8."""
+
+    def render(self) -> tuple[np.ndarray, ...] | None:
+        """The last wingbeat of every row as pictures (height, width, 3) of uint8; None without a render mode."""
+        if self.render_mode is None:
+            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+            return None
+        return tuple(self._picture(row) for row in range(self.num_envs))
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, Info]:
         """Begin new episodes, in all rows or in those of `options["reset_mask"]`.

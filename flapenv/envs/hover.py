@@ -1,21 +1,21 @@
 """flapenv/Hover-v0: one step is one wingbeat; hover with the least power. Native vector env, and its batch of one."""
 
-import inspect
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
-from flapenv.aero.checks import allowed, require_flag, require_name
+from flapenv.aero.checks import require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
-from flapenv.envs.batch import BatchEnv, Info, checked_actions, require_seed
+from flapenv.envs.batch import BatchEnv, Info, refuse_unknown
+from flapenv.envs.describe import action_table, described, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, choose_insects
+from flapenv.envs.single import SingleEnv
 from flapenv.insects import Insect
 from flapenv.objective import HoverObjective, Score
 from flapenv.performance import yardstick
@@ -68,7 +68,7 @@ class HoverVectorEnv(BatchEnv):
             TypeError: for an unknown argument or one of another kind.
             ValueError: for an unknown name or a value outside its range.
         """
-        _refuse(unknown, known=ARGUMENTS)
+        refuse_unknown(unknown, type(self))
         require_flag("include_infeasible", include_infeasible)
         self.problem = as_problem(problem)
         self.insects = choose_insects(insect, self.problem, include_infeasible=include_infeasible)
@@ -163,14 +163,10 @@ class HoverVectorEnv(BatchEnv):
         seen = np.concatenate([self._features[self._insect], self._felt], axis=1)
         return np.clip(seen, -OBSERVATION_LIMIT, OBSERVATION_LIMIT)
 
-    def render(self) -> tuple[np.ndarray, ...] | None:
-        """The last wingbeat of every row as pictures (height, width, 3) of uint8; None without a render mode."""
-        if self.render_mode is None:
-            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
-            return None
+    def _picture(self, row: int) -> np.ndarray:
         from flapenv.drawing import wingbeat_image
 
-        return tuple(wingbeat_image(*self._last_beat(row), self.problem.model) for row in range(self.num_envs))
+        return wingbeat_image(*self._last_beat(row), self.problem.model)
 
     def _last_beat(self, row: int) -> tuple[Insect, Stroke]:
         """Insect and stroke of a row's last wingbeat; the insect's own stroke before an episode's first.
@@ -185,16 +181,8 @@ class HoverVectorEnv(BatchEnv):
         return self.insects[self._beaten[row]], Stroke(**values)
 
 
-ARGUMENTS = tuple(name for name in inspect.signature(HoverVectorEnv).parameters if name != "unknown")
-
-
-def _refuse(unknown: dict[str, Any], *, known: Sequence[str]) -> None:
-    """Name an argument that does not exist, and those that do."""
-    for name, value in unknown.items():
-        raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
-
-
-class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
+@described(actions=action_table(stroke_rows(HoverProblem().box, StrokeCoordinates(HoverProblem().box).axis_names)))
+class HoverEnv(SingleEnv):
     """One step is one wingbeat: choose its kinematics, hover with the least aerodynamic power.
 
     ## Description
@@ -205,15 +193,7 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
     ## Action space
     `Box(-1, 1, (n,), float32)`, one row a free parameter, fixed ones dropped. In the default problem:
 
-    | Num | Name | Symbol | Unit | -1 | +1 | Scale |
-    |---|---|---|---|---|---|---|
-    | 0 | tip speed, q = f φmax; f = q/φmax is clipped to [0.5, 1.5] × the reference frequency | q | rad Hz | \
-0.5 f_ref 40° | 1.5 f_ref 90° | log |
-    | 1 | flap_amplitude | φmax | rad | 40° | 90° | linear |
-    | 2 | flap_shape | Cφ | - | 0.01 | 0.99 | log(1 - Cφ) |
-    | 3 | pitch_shape | Cθ | - | 0.1 | 10 | log |
-    | 4 | pitch_amplitude | θmax | rad | 45° | 65° | linear |
-    | 5 | pitch_phase | δ | rad | 60° | 120° | linear |
+    {actions}
 
     Finite actions outside [-1, 1] are clipped, as is a frequency q/φmax outside its bounds; `info["clipped"]` says so
     of both. NaN and inf are refused.
@@ -250,60 +230,4 @@ class HoverEnv(gym.Env[np.ndarray, np.ndarray]):
     - v0: first version.
     """
 
-    metadata: dict[str, Any] = dict(BatchEnv.metadata)
-
-    def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
-        """Make a batch of one.
-
-        Args:
-            render_mode: "rgb_array" or None.
-            **arguments: of `HoverVectorEnv`, but for num_envs and autoreset_mode.
-
-        Raises:
-            TypeError: for an unknown argument or one of another kind.
-            ValueError: for an unknown name or a value outside its range.
-        """
-        own = [name for name in ARGUMENTS if name not in ("num_envs", "autoreset_mode")]
-        _refuse({name: value for name, value in arguments.items() if name not in own}, known=own)
-        self.batch = HoverVectorEnv(1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **arguments)
-        self.render_mode = self.batch.render_mode
-        self.observation_space = self.batch.single_observation_space
-        self.action_space = self.batch.single_action_space
-
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, Info]:
-        """Begin an episode; `options={"insect": name}` chooses the insect."""
-        super().reset(seed=require_seed(seed))
-        self.batch.np_random = self.np_random
-        observation, info = self.batch.reset(options=options)
-        return observation[0], _first_row(info)
-
-    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
-        """One wingbeat, which ends the episode; `info["optimality_gap"]` is None where the insect cannot hover.
-
-        Args:
-            action: shape (n,), finite.
-
-        Raises:
-            TypeError: for an action that is not numbers.
-            ValueError: for an action of another shape, or with NaN or inf.
-            gymnasium.error.ResetNeeded: before a reset.
-        """
-        observation, reward, terminated, truncated, info = self.batch.step(
-            checked_actions("action", action, self.action_space.shape)[None]
-        )
-        return observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first_row(info)
-
-    def render(self) -> np.ndarray | None:
-        """The last wingbeat as a picture (height, width, 3) of uint8; None without a render mode."""
-        frames = self.batch.render()
-        return None if frames is None else frames[0]
-
-
-def _first_row(info: Info) -> Info:
-    """The infos of a batch of one as plain Python values; None where the row has no value."""
-    row: Info = {}
-    for key, value in info.items():
-        if not key.startswith("_"):
-            element = value[0]
-            row[key] = (element.item() if isinstance(element, np.generic) else element) if info[f"_{key}"][0] else None
-    return row
+    batch_class = HoverVectorEnv

@@ -1,0 +1,82 @@
+"""The scalar environment of every member of the family: its batch of one behind Gymnasium's `Env`."""
+
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AutoresetMode
+
+from flapenv.envs.batch import BatchEnv, Info, arguments_of, checked_actions, refuse_unknown, require_seed
+
+BATCH_ONLY = ("num_envs", "autoreset_mode")
+"""Arguments of a batch that a single environment has no use for."""
+
+
+class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
+    """A batch of one as a `gymnasium.Env`; a member sets `batch_class` and describes itself in its docstring."""
+
+    batch_class: type[BatchEnv]
+    metadata: dict[str, Any] = dict(BatchEnv.metadata)
+
+    def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
+        """Make a batch of one.
+
+        Args:
+            render_mode: "rgb_array" or None.
+            **arguments: of the batched environment, but for num_envs and autoreset_mode.
+
+        Raises:
+            TypeError: for an unknown argument or one of another kind.
+            ValueError: for an unknown name or a value outside its range.
+        """
+        own = [name for name in arguments_of(self.batch_class) if name not in BATCH_ONLY]
+        unknown = {name: value for name, value in arguments.items() if name not in own}
+        refuse_unknown(unknown, self.batch_class, hidden=BATCH_ONLY)
+        make: Any = self.batch_class  # each member has arguments of its own
+        self.batch: BatchEnv = make(1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **arguments)
+        self.render_mode = self.batch.render_mode
+        self.observation_space = self.batch.single_observation_space
+        self.action_space = self.batch.single_action_space
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, Info]:
+        """Begin an episode; `options` as the batch takes them.
+
+        Raises:
+            TypeError: for a seed or options of another type.
+            ValueError: for an unknown option.
+        """
+        super().reset(seed=require_seed(seed))
+        self.batch.np_random = self.np_random
+        observation, info = self.batch.reset(options=options)
+        return observation[0], _first_row(info)
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
+        """One wingbeat; infos are plain Python values, None where a value does not exist.
+
+        Args:
+            action: shape (n,), finite.
+
+        Raises:
+            TypeError: for an action that is not numbers.
+            ValueError: for an action of another shape, or with NaN or inf.
+            gymnasium.error.ResetNeeded: before a reset, and after the end of an episode.
+        """
+        observation, reward, terminated, truncated, info = self.batch.step(
+            checked_actions("action", action, self.action_space.shape)[None]
+        )
+        return observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first_row(info)
+
+    def render(self) -> np.ndarray | None:
+        """The last wingbeat as a picture (height, width, 3) of uint8; None without a render mode."""
+        frames: Any = self.batch.render()
+        return None if frames is None else frames[0]
+
+
+def _first_row(info: Info) -> Info:
+    """The infos of a batch of one as plain Python values; None where the row has no value."""
+    row: Info = {}
+    for key, value in info.items():
+        if not key.startswith("_"):
+            element = value[0]
+            row[key] = (element.item() if isinstance(element, np.generic) else element) if info[f"_{key}"][0] else None
+    return row
