@@ -110,7 +110,7 @@ class Budget:
         self._spend(GRADIENT_COST * len(points))
         strokes, _ = self.coordinates.decode(points, self.insect.reference)
         case = self.objective.cases.rows(np.zeros(1, dtype=np.intp))
-        weight, power = hover_averages(case, self.problem.model, **strokes, nodes=self.objective.nodes)
+        weight, power = hover_averages(case, self.problem.model, **strokes, rule=self.objective.rule)
         deficit = (1 - weight).clip(0)
         self._note(as_numpy(power), as_numpy(weight))
         return power / self.best.reference_power + float(self.objective.lift_penalty[0]) * deficit

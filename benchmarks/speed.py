@@ -58,7 +58,7 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
     points = np.random.default_rng(0).uniform(-1, 1, (ROWS, 6)).astype(np.float32)
     values, _ = StrokeCoordinates(problem.box).decode(points, StrokeReference(26.3, 1.0))
     double = {name: value.astype(float) for name, value in values.items()}
-    nodes = problem.box.time_nodes(tolerance=1e-6)
+    rule = problem.box.time_rule(tolerance=1e-6)
     case = hover_case(hawkmoth, problem.model).rows(np.newaxis, np.float32)
     strokes = Stroke(**double)
 
@@ -77,7 +77,7 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
         (f"evaluate, {ROWS} strokes, float64, 1e-9", lambda: evaluate(hawkmoth, strokes), ROWS),
         (
             f"fast path, {ROWS} rows, float32, 1e-6",
-            lambda: hover_averages(case, problem.model, **values, nodes=nodes),
+            lambda: hover_averages(case, problem.model, **values, rule=rule),
             ROWS,
         ),
         (f"vector env, {ROWS} rows, step with infos", lambda: batch.step(points), ROWS),

@@ -18,6 +18,9 @@ from flapenv.aero.wing import Wing
 from flapenv.insects import Insect, WingFactors
 from flapenv.model import HoverModel
 
+TRAILING = ("force_constants", "inertia")
+"""Fields of `HoverCase` with an axis of their own behind the batch's."""
+
 
 @record
 class HoverCase:
@@ -55,8 +58,17 @@ class HoverCase:
         """What boxes may be relative to."""
         return StrokeReference(self.reference_frequency, self.reference_amplitude)
 
+    def spread(self, shape: tuple[int, ...]) -> "HoverCase":
+        """The case with every field broadcast to a shape and its axes made one; trailing axes stay."""
+        count = math.prod(shape)
+        spread = {}
+        for name, value in vars(self).items():
+            own = np.shape(value)[-1:] if name in TRAILING else ()
+            spread[name] = np.broadcast_to(value, (*shape, *own)).reshape(count, *own)
+        return HoverCase(**spread)
+
     def rows(self, index: Any, dtype: Any = float) -> "HoverCase":
-        """The case with every field indexed by `index` and cast, to serve a batch of rows."""
+        """The case with every field indexed by `index` and cast (None: as it is), to serve a batch of rows."""
         return HoverCase(**{name: np.asarray(value, dtype=dtype)[index] for name, value in vars(self).items()})
 
 

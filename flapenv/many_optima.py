@@ -16,7 +16,7 @@ positive power) alone by `optimum`.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -85,7 +85,7 @@ def many_optima(insects: Insect, problem: HoverProblem | str | None = None) -> M
     case = hover_case(insects, problem.model)
     count = _count(insects)
     on_curve = np.zeros(count, dtype=bool)
-    strokes = {name: np.empty(count) for name in STROKE_PARAMETERS}
+    strokes: dict[str, Any] = {name: np.empty(count) for name in STROKE_PARAMETERS}
     weight, power, multiplier = np.empty(count), np.empty(count), np.full(count, math.inf)
     largest = np.full(count, np.nan)
     shared = problem.model.has_proven_bound and problem.model.tip_loss == "reference"
@@ -96,9 +96,7 @@ def many_optima(insects: Insect, problem: HoverProblem | str | None = None) -> M
         on_curve, strokes, multiplier = _free(case, problem, count)
     strokes = {name: np.array(np.broadcast_to(values, (count,)), dtype=float) for name, values in strokes.items()}
     if np.any(on_curve):
-        weight, power = hover_averages(
-            case, problem.model, **strokes, nodes=problem.box.time_nodes(tolerance=TOLERANCE)
-        )
+        weight, power = hover_averages(case, problem.model, **strokes, rule=problem.box.time_rule(tolerance=TOLERANCE))
     multiplier = np.where(on_curve & (weight > 1 + SLACK), 0.0, multiplier)
     if shared:
         largest = largest_weight_support(insects, problem)

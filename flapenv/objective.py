@@ -72,7 +72,7 @@ class HoverObjective:
         self.insects, self.problem, self.dtype = tuple(insects), problem, np.dtype(dtype)
         self.optima: tuple[Optimum, ...] = tuple(optimum(insect, problem) for insect in self.insects)
         self.cases = stack_cases([hover_case(insect, problem.model) for insect in self.insects])
-        self.nodes = problem.box.time_nodes(tolerance=QUADRATURE_TOLERANCE)
+        self.rule = problem.box.time_rule(tolerance=QUADRATURE_TOLERANCE)
 
         feasible = np.array([best.feasible for best in self.optima])
         bound = np.array([best.reference_power for best in self.optima])
@@ -123,7 +123,7 @@ class HoverObjective:
         """The numbers of the insects at `index`, as arrays of the objective's type."""
         return self.cases.rows(index, self.dtype)
 
-    def score(self, index: np.ndarray, strokes: dict[str, np.ndarray]) -> Score:
+    def score(self, index: np.ndarray, strokes: dict[str, Any]) -> Score:
         """Score one stroke for each row.
 
         Args:
@@ -133,9 +133,7 @@ class HoverObjective:
         Returns:
             Arrays of shape (n,).
         """
-        weight_support, specific_power = hover_averages(
-            self.rows(index), self.problem.model, **strokes, nodes=self.nodes
-        )
+        weight_support, specific_power = hover_averages(self.rows(index), self.problem.model, **strokes, rule=self.rule)
         reference = {name: value[index] for name, value in self._reference.items()}
         feasible = self._feasible[index]
         deficit = np.maximum(0, 1 - weight_support)

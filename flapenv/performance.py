@@ -1,19 +1,26 @@
 """Weight support and specific power of a stroke: the physics applied to an insect under stated model options."""
 
+import itertools
 import math
 from typing import Any
 
 import numpy as np
 
 from flapenv.aero import induced
-from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result
-from flapenv.aero.checks import record
+from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result, is_tensor
+from flapenv.aero.checks import record, require_count
 from flapenv.aero.paid_power import positive_power
 from flapenv.aero.stroke import Stroke
-from flapenv.aero.wingbeat import force_averages, time_nodes
+from flapenv.aero.threads import in_threads
+from flapenv.aero.wingbeat import TimeRule, force_averages, time_rule
 from flapenv.case import HoverCase, force_law, hover_case, induced_power_factor, lift_constant
 from flapenv.insects import Insect, as_insect
 from flapenv.model import HoverModel, warn_of_aspect_ratio
+
+PART, PAID_PART = 2**16, 2**10
+"""Rows computed at once, and where only positive power is paid, which keeps every instant of every row."""
+LEAST_PART = 2**13
+"""Rows that are worth a thread of their own."""
 
 
 @record
@@ -47,9 +54,12 @@ def hover_averages(
     flap_shape: Real,
     pitch_shape: Real,
     pitch_phase: Real,
-    nodes: int,
+    rule: TimeRule,
+    threads: int = 1,
 ) -> tuple[Real, Real]:
     """Λ [-] and P* [W/kg] of strokes that are known to be valid: the one path behind every other evaluation.
+
+    Arrays of many rows are computed in parts, so that memory stays bounded, and parts on threads where asked for.
 
     Args:
         case: the insect's numbers, fields broadcast against the stroke's.
@@ -60,47 +70,60 @@ def hover_averages(
         flap_shape: Cφ [-].
         pitch_shape: Cθ [-].
         pitch_phase: δ [rad].
-        nodes: of the time quadrature, from `time_nodes`.
+        rule: of the time quadrature, from `time_rule`.
+        threads: how many work at once; tensors know their own.
 
     Returns:
         Weight support and specific power, of the broadcast shape.
     """
+    stroke = {
+        "frequency": frequency,
+        "flap_amplitude": flap_amplitude,
+        "pitch_amplitude": pitch_amplitude,
+        "flap_shape": flap_shape,
+        "pitch_shape": pitch_shape,
+        "pitch_phase": pitch_phase,
+    }
+    if any(is_tensor(value) for value in (*stroke.values(), *vars(case).values())):
+        return _averages(case, model, stroke, rule)
+    shape = np.broadcast_shapes(*(np.shape(value) for value in stroke.values()), np.shape(case.lift_scale))
+    count, largest = math.prod(shape), PAID_PART if model.accounting == "positive" else PART
+    parts = max(math.ceil(count / largest), min(threads, count // LEAST_PART))
+    if parts <= 1:
+        return _averages(case, model, stroke, rule)
+    rows = {name: np.broadcast_to(value, shape).reshape(-1) for name, value in stroke.items()}
+    every = case.spread(shape)
+    results = np.empty((2, count), np.result_type(*rows.values(), case.lift_scale))
+
+    def work(part: slice) -> None:
+        own = {name: value[part] for name, value in rows.items()}
+        results[:, part] = _averages(every.rows(part, None), model, own, rule)
+
+    edges = np.linspace(0, count, parts + 1).astype(int)
+    in_threads(work, [slice(start, stop) for start, stop in itertools.pairwise(edges)], threads)
+    return results[0].reshape(shape), results[1].reshape(shape)
+
+
+def _averages(case: HoverCase, model: HoverModel, stroke: dict[str, Real], rule: TimeRule) -> tuple[Real, Real]:
+    """Λ and P* of strokes, all at once."""
     _, frequency, flap_amplitude, lift_scale, power_scale = as_arrays(
-        frequency, flap_amplitude, case.lift_scale, case.power_scale
+        stroke["frequency"], stroke["flap_amplitude"], case.lift_scale, case.power_scale
     )
     speed = 4 * frequency * flap_amplitude
     law = force_law(case, model, speed, flap_amplitude)
-    scale, lift_average, power_average = force_averages(
-        law,
-        flap_shape=flap_shape,
-        pitch_amplitude=pitch_amplitude,
-        pitch_shape=pitch_shape,
-        pitch_phase=pitch_phase,
-        nodes=nodes,
-    )
+    waveform = {name: stroke[name] for name in ("flap_shape", "pitch_amplitude", "pitch_shape", "pitch_phase")}
+    scale, lift_average, power_average = force_averages(law, **waveform, rule=rule)
     _, speed, lift_scale, power_scale, scale, lift_average, power_average = as_arrays(
         speed, lift_scale, power_scale, scale, lift_average, power_average
     )
     weight_support = lift_scale * scale * speed**2 * lift_average
-    specific_power = 2 * power_scale * scale * speed**3 * power_average
     if model.accounting == "positive":
-        specific_power = positive_power(
-            law,
-            power_scale,
-            case.inertia,
-            frequency=frequency,
-            flap_amplitude=flap_amplitude,
-            flap_shape=flap_shape,
-            pitch_amplitude=pitch_amplitude,
-            pitch_shape=pitch_shape,
-            pitch_phase=pitch_phase,
-            nodes=nodes,
-        )
-    return weight_support, specific_power
+        return weight_support, positive_power(law, power_scale, case.inertia, **stroke, rule=rule)
+    return weight_support, 2 * power_scale * scale * speed**3 * power_average
 
 
 def evaluate(
-    insect: Insect | str, stroke: Stroke | None = None, *, tolerance: float = 1e-9, **model: Any
+    insect: Insect | str, stroke: Stroke | None = None, *, tolerance: float = 1e-9, threads: int = 1, **model: Any
 ) -> HoverPerformance:
     """Weight support and power of an insect beating a stroke, by the fast cycle averages.
 
@@ -110,7 +133,8 @@ def evaluate(
         insect: the insect or the name of one of `INSECTS`; array fields broadcast against the stroke's.
         stroke: the stroke; the insect's own where None, which is the line of Table 3.
         tolerance: relative error of the time quadrature, for coefficients smooth in α (robofly's lift jumps at 90°, a
-            table has corners: some 1e-5); see `time_nodes` for what it means near θmax = 90°.
+            table has corners: some 1e-5); see `time_rule` for what it means near θmax = 90°.
+        threads: how many work at once on large batches.
         **model: options of `HoverModel`.
 
     Returns:
@@ -122,11 +146,12 @@ def evaluate(
 
     Source: Nabawy & Crowther (2014), Part II, (2.1)-(2.12) and section 3.3.
     """
+    require_count("threads", threads)
     insect, stroke, options = checked(insect, stroke, model)
     warn_of_aspect_ratio(insect.name, insect.wing.aspect_ratio, options, stacklevel=3)
     case = hover_case(insect, options)
-    nodes = time_nodes(stroke.flap_shape, stroke.pitch_shape, tolerance=tolerance)
-    weight_support, specific_power = hover_averages(case, options, **vars(stroke), nodes=nodes)
+    rule = time_rule(stroke.flap_shape, stroke.pitch_shape, tolerance=tolerance)
+    weight_support, specific_power = hover_averages(case, options, **vars(stroke), rule=rule, threads=threads)
     xp, frequency, amplitude, weight_support, specific_power, mass = as_arrays(
         stroke.frequency, stroke.flap_amplitude, weight_support, specific_power, insect.mass
     )

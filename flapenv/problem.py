@@ -10,7 +10,7 @@ import numpy as np
 from flapenv.aero.arrays import Real
 from flapenv.aero.checks import record, require_name, require_scalar
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
-from flapenv.aero.wingbeat import time_nodes
+from flapenv.aero.wingbeat import TimeRule, time_rule
 from flapenv.model import COEFFICIENTS, HoverModel
 
 Interval = tuple[float, float]
@@ -79,11 +79,11 @@ class StrokeBox:
         low, high = self.bounds(name, StrokeReference(1.0, 1.0))
         return bool(high > low)
 
-    def time_nodes(self, *, tolerance: float) -> int:
-        """Nodes of the time quadrature that serve every stroke of the box; see `flapenv.aero.wingbeat.time_nodes`."""
+    def time_rule(self, *, tolerance: float) -> TimeRule:
+        """The time quadrature that serves every stroke of the box; see `flapenv.aero.wingbeat.time_rule`."""
         low, high = self.flap_shape
         sharpest = np.nextafter(1.0, 0.0) if low < high == 1 else high  # as near to the triangle as a stroke can be
-        return time_nodes(sharpest, self.pitch_shape[1], tolerance=tolerance)
+        return time_rule(sharpest, self.pitch_shape[1], tolerance=tolerance)
 
     @property
     def free(self) -> tuple[str, ...]:

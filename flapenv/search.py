@@ -1,7 +1,7 @@
 """The search behind `optimum`: multi-start SLSQP over a box's cube, for the least power or the largest lift."""
 
 import math
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -39,7 +39,7 @@ class Search:
         """Reduce the insect and the model to what strokes are evaluated with."""
         self.problem, self.case = problem, hover_case(insect, problem.model)
         self.coordinates = StrokeCoordinates(problem.box, scaling="log")
-        self.nodes = problem.box.time_nodes(tolerance=1e-9)
+        self.rule = problem.box.time_rule(tolerance=1e-9)
         self.wingbeats = 0
         self._last: tuple[np.ndarray, tuple[float, float, np.ndarray, np.ndarray]] | None = None
 
@@ -54,7 +54,7 @@ class Search:
         """Λ and P* at points of shape (..., n)."""
         values, _ = self.coordinates.decode(points, self.case.reference)
         self.wingbeats += math.prod(points.shape[:-1])
-        return hover_averages(self.case, self.problem.model, **values, nodes=self.nodes)
+        return hover_averages(self.case, self.problem.model, **values, rule=self.rule)
 
     def stroke(self, point: np.ndarray) -> Stroke:
         """The stroke at a point."""
@@ -137,16 +137,14 @@ class Search:
     def sensitivity(self, stroke: Stroke, multiplier: float) -> dict[str, float]:
         """∂P*/∂x - μ ∂Λ/∂x for every parameter, by differences that stay within its valid range."""
         own = {name: float(getattr(stroke, name)) for name in STROKE_PARAMETERS}
-        slopes, scale = (
-            {},
-            1e-3 if self.problem.model.accounting == "positive" else 1e-5,
-        )  # power with corners is rougher
+        slopes = {}
+        scale = 1e-3 if self.problem.model.accounting == "positive" else 1e-5  # power with corners is rougher
         for name, row in STROKE_PARAMETERS.items():
             step = scale * max(abs(own[name]), 0.1)
             high = math.pi / 2 if name == "flap_amplitude" and self.problem.model.uses_k else row.high
             ends = np.clip([own[name] - step, own[name] + step], row.low, np.nextafter(high, 0.0))
-            values = {key: np.where(key == name, ends, value) for key, value in own.items()}
-            weight, power = hover_averages(self.case, self.problem.model, **values, nodes=self.nodes)
+            values: dict[str, Any] = {key: np.where(key == name, ends, value) for key, value in own.items()}
+            weight, power = hover_averages(self.case, self.problem.model, **values, rule=self.rule)
             self.wingbeats += 2
             slopes[name] = float((power[1] - power[0] - multiplier * (weight[1] - weight[0])) / (ends[1] - ends[0]))
         return slopes

@@ -34,7 +34,7 @@ class Shapes:
 
     def __init__(self, box: StrokeBox) -> None:
         """Take the shape parameters of a box; its frequency and amplitude do not count."""
-        self.nodes = box.time_nodes(tolerance=TOLERANCE)
+        self.rule = box.time_rule(tolerance=TOLERANCE)
         fixed: dict[str, Any] = {"frequency": 1.0, "flap_amplitude": 1.0}
         own = {name: getattr(box, name) for name in SHAPES}
         self.coordinates = StrokeCoordinates(StrokeBox(**fixed, **own), scaling="log")
@@ -47,7 +47,7 @@ class Shapes:
     def numbers(self, points: np.ndarray, ratio: np.ndarray | float = 0.0) -> tuple[np.ndarray, np.ndarray]:
         """L and S + e K/2 at points (..., n), for e of shape (...)."""
         law = PlateLaw(constant=1.0, profile_drag=ratio) if np.any(ratio) else None
-        lift, power = speed_averages(**self.values(points), nodes=self.nodes, law=law)
+        lift, power = speed_averages(**self.values(points), rule=self.rule, law=law)
         return lift, power if law is None else power / 2
 
     def best(self, goal: str, starts: np.ndarray, *, ratio: float = 0.0, needed: float = 0.0) -> np.ndarray:

@@ -9,7 +9,7 @@ import pytest
 
 from flapenv import HoverProblem, StrokeBox
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
-from flapenv.aero.wingbeat import speed_averages
+from flapenv.aero.wingbeat import TimeRule, speed_averages
 from flapenv.problem import as_problem
 
 
@@ -34,11 +34,13 @@ def test_frequency_bounds_are_relative_unless_given_in_hertz() -> None:
 def test_a_box_that_reaches_the_triangle_gets_nodes_for_its_sharpest_neighbours() -> None:
     rest = {"pitch_shape": (0.1, 1.0)}
     opened, shut, triangle = (StrokeBox(flap_shape=bounds, **rest) for bounds in ((0.0, 1.0), (0.0, 0.9999), 1.0))
-    nodes = opened.time_nodes(tolerance=1e-6)
-    assert nodes > shut.time_nodes(tolerance=1e-6) > triangle.time_nodes(tolerance=1e-6)
+    rule = opened.time_rule(tolerance=1e-6)
+    assert rule > shut.time_rule(tolerance=1e-6) > triangle.time_rule(tolerance=1e-6)
     shapes = 1 - 10.0 ** -np.arange(2, 15)
     waveform = (shapes, 1.1, 0.5, 1.3)
-    np.testing.assert_allclose(speed_averages(*waveform, nodes=nodes), speed_averages(*waveform, nodes=1500), rtol=1e-5)
+    np.testing.assert_allclose(
+        speed_averages(*waveform, rule=rule), speed_averages(*waveform, rule=TimeRule(1500, 3.0)), rtol=1e-5
+    )
 
 
 def test_one_number_fixes_a_parameter() -> None:

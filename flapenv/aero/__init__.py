@@ -8,7 +8,7 @@ from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeParameter
 from flapenv.aero.planform import BetaPlanform, FunctionPlanform, TabulatedPlanform
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
-from flapenv.aero.wingbeat import speed_averages, time_nodes
+from flapenv.aero.wingbeat import TimeRule, speed_averages, time_rule
 
 __all__ = [
     "STROKE_PARAMETERS",
@@ -27,9 +27,10 @@ __all__ = [
     "StrokeParameter",
     "TabulatedPlanform",
     "TermHistory",
+    "TimeRule",
     "Wing",
     "WingbeatHistory",
     "blade_element",
     "speed_averages",
-    "time_nodes",
+    "time_rule",
 ]

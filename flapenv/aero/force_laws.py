@@ -7,7 +7,7 @@ so that no angle is ever formed where none is needed. Its constants are scalars 
 import abc
 import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -52,10 +52,9 @@ class ForceLaw(abc.ABC):
         """The numbers that may be arrays, by the names of their fields."""
         return {name: value for name, value in vars(self).items() if hasattr(value, "ndim")}
 
-    def along_nodes(self, constants: Sequence[Real]) -> Self:
-        """The same law with `constants`, in their order, given an axis to broadcast against nodes."""
-        spread = (value[..., None] if value.ndim else value for value in constants)
-        return dataclasses.replace(self, **dict(zip(self.constants, spread, strict=True)))
+    def with_constants(self, constants: Mapping[str, Real]) -> Self:
+        """The same law with other numbers in place of its `constants`."""
+        return dataclasses.replace(self, **constants)
 
     def strip_force(self, chordwise: Real, normal: Real) -> tuple[Real, Real]:
         """Force over ½ρ dS of a strip that moves through the air, any way round  (2.4).

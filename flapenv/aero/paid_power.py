@@ -13,8 +13,8 @@ from typing import Any
 
 from flapenv.aero.arrays import Real, as_arrays, as_like
 from flapenv.aero.force_laws import ForceLaw
-from flapenv.aero.quadrature import graded_rule
 from flapenv.aero.stroke import flap_bend, flap_speed, pitch_bend, pitch_speed, pitch_waveform
+from flapenv.aero.wingbeat import TimeRule
 
 NODE_FACTOR = 6
 """Nodes for each one that the smooth averages need: where the power changes sign the integrand has corners."""
@@ -33,7 +33,7 @@ def positive_power(
     pitch_amplitude: Real,
     pitch_shape: Real,
     pitch_phase: Real,
-    nodes: int,
+    rule: TimeRule,
 ) -> Real:
     """⟨max(0, A |φ̇|³ C_D + Ė)⟩ over the cycle, in the unit that A and E give [W/kg, for instance].
 
@@ -48,22 +48,23 @@ def positive_power(
         pitch_amplitude: θmax [rad].
         pitch_shape: Cθ [-].
         pitch_phase: δ [rad].
-        nodes: per piece of the half-stroke, as for the smooth averages, from `time_nodes`.
+        rule: of a piece of the half-stroke for smooth averages, from `time_rule`.
 
     Returns:
         The mean, shape (...).
     """
-    constants = list(law.constants.values())
+    constants = law.constants
     fields: Any = aerodynamic, inertia, frequency, flap_amplitude, flap_shape, pitch_amplitude, pitch_shape, pitch_phase
-    xp, *fields, pitch_phase = as_arrays(*fields[:-1], *constants, fields[-1])
-    aerodynamic, inertia, frequency, flap_amplitude, flap_shape, pitch_amplitude, pitch_shape, *constants = fields
-    law = law.along_nodes(constants)
+    xp, *fields, pitch_phase = as_arrays(*fields[:-1], *constants.values(), fields[-1])
+    aerodynamic, inertia, frequency, flap_amplitude, flap_shape, pitch_amplitude, pitch_shape, *own = fields
+    spread = (value[..., None] if value.ndim else value for value in own)
+    law = law.with_constants(dict(zip(constants, spread, strict=True)))
     aerodynamic, frequency, flap_amplitude, flap_shape, pitch_amplitude, pitch_shape = (
         value[..., None] for value in (aerodynamic, frequency, flap_amplitude, flap_shape, pitch_amplitude, pitch_shape)
     )
     flap_inertia, product, pitch_inertia, added_mass = (inertia[..., i, None] for i in range(4))
     omega = 2 * math.pi * frequency
-    fractions, weights = as_like(pitch_phase, *graded_rule(NODE_FACTOR * nodes))
+    fractions, weights = as_like(pitch_phase, *rule.refined(NODE_FACTOR).points)
     half_turns = xp.round(pitch_phase / math.pi)
     sense = (1 - 2 * (half_turns % 2))[..., None]
     before = (half_turns * math.pi - pitch_phase + math.pi / 2)[..., None]  # from stroke to pitch reversal

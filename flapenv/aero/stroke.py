@@ -25,39 +25,40 @@ def flap_waveform(sin_phase: Real, flap_shape: Real) -> Real:
     return xp.asin(shape * sin_phase) / xp.asin(shape)
 
 
-def flap_speed(cos_phase: Real, flap_shape: Real) -> Real:
+def flap_speed(cos_phase: Real, flap_shape: Real, scale: Real = 1.0) -> Real:
     """φ̇/(ω φmax) = Cφ cos ωt/(asin(Cφ) √(1 - Cφ² sin² ωt)) [-], the rate of (2.1).
 
-    The root is taken of (1-Cφ)(1+Cφ) + Cφ² cos² ωt, which keeps its digits as Cφ → 1. The derivatives by Cφ of the
-    averages grow without bound there, as (1-Cφ)^(-1/2); at the triangle itself tensors get 0 for theirs.
+    Computed as cos ωt/(asin(Cφ) √(ρ + cos² ωt)), ρ = (1-Cφ)(1+Cφ)/Cφ², which keeps its digits as Cφ → 1. The
+    derivatives by Cφ of the averages grow without bound there, as (1-Cφ)^(-1/2); at the triangle itself tensors get 0.
 
     Args:
         cos_phase: cos ωt [-], any shape.
         flap_shape: Cφ in [0, 1] [-], broadcast against `cos_phase`; both limits are exact.
+        scale: a factor, broadcast against `flap_shape`.
 
     Returns:
-        The flapping rate over ω φmax, ±2/π for the triangle; 0 at its corners.
+        The flapping rate over ω φmax times the scale, ±2/π for the triangle; 0 at its corners.
     """
-    xp, cos_phase, shape = as_arrays(cos_phase, flap_shape)
+    xp, cos_phase, shape, scale = as_arrays(cos_phase, flap_shape, scale)
     shape = xp.clip(without_slope(shape, shape == 1), SMALLEST_SHAPE, None)
-    scaled = shape * cos_phase
-    root = xp.sqrt(xp.clip((1 - shape) * (1 + shape) + scaled * scaled, 1e-36, None))
-    return scaled / (xp.asin(shape) * root)
+    roundness = xp.clip((1 - shape) * (1 + shape) / (shape * shape), 1e-36, None)  # at the corners 0 over a little
+    return cos_phase / xp.sqrt(roundness + cos_phase * cos_phase) * (scale / xp.asin(shape))
 
 
-def pitch_waveform(sin_pitch_phase: Real, pitch_shape: Real) -> Real:
+def pitch_waveform(sin_pitch_phase: Real, pitch_shape: Real, scale: Real = 1.0) -> Real:
     """θ/θmax = tanh(Cθ sin(ωt + δ))/tanh(Cθ) [-]  (2.2).
 
     Args:
         sin_pitch_phase: sin(ωt + δ) [-], any shape.
         pitch_shape: Cθ >= 0 [-], broadcast against `sin_pitch_phase`; Cθ = 0 and Cθ → ∞ are exact.
+        scale: a factor, such as θmax, broadcast against `pitch_shape`.
 
     Returns:
-        The pitching angle over its amplitude, in [-1, 1].
+        The pitching angle over its amplitude, in [-1, 1], times the scale.
     """
-    xp, sin_pitch_phase, shape = as_arrays(sin_pitch_phase, pitch_shape)
+    xp, sin_pitch_phase, shape, scale = as_arrays(sin_pitch_phase, pitch_shape, scale)
     shape = xp.clip(shape, SMALLEST_SHAPE, None)
-    return xp.tanh(shape * sin_pitch_phase) / xp.tanh(shape)
+    return xp.tanh(shape * sin_pitch_phase) * (scale / xp.tanh(shape))
 
 
 def angle_of_attack(pitch_angle: Real, flap_rate: Real) -> Real:

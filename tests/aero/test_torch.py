@@ -10,7 +10,7 @@ from conftest import strokes
 from hypothesis import given, settings
 
 from flapenv import Stroke, evaluate, load_insect
-from flapenv.aero.wingbeat import speed_averages
+from flapenv.aero.wingbeat import TimeRule, speed_averages
 
 FIELDS = ("frequency", "flap_amplitude", "pitch_amplitude", "flap_shape", "pitch_shape", "pitch_phase")
 HAWKMOTH = load_insect("hawkmoth")
@@ -38,7 +38,7 @@ def test_slopes_agree_with_finite_differences_towards_the_sinusoid_and_the_trian
     step = min(1e-6, (1 - flap_shape) * 1e-2)
     arguments = tensor(flap_shape), tensor(1.0), tensor(pitch_shape), tensor(1.4)
     assert torch.autograd.gradcheck(
-        lambda *values: speed_averages(*values, nodes=400), arguments, eps=step, rtol=1e-3, atol=1e-4
+        lambda *values: speed_averages(*values, rule=TimeRule(400, 3.0)), arguments, eps=step, rtol=1e-3, atol=1e-4
     )
 
 
@@ -54,7 +54,7 @@ def test_every_slope_of_the_performance_agrees_with_finite_differences() -> None
 
 def test_at_the_triangle_itself_the_unbounded_slope_is_left_out_and_the_others_stand() -> None:
     values = tensor(1.0), tensor(1.0), tensor(5.0), tensor(math.pi / 2)
-    lift, power = speed_averages(*values, nodes=100)
+    lift, power = speed_averages(*values, rule=TimeRule(100, 3.0))
     for average in (lift, power):
         slopes = torch.autograd.grad(average.sum(), values, retain_graph=True)
         assert slopes[0].item() == 0
