@@ -67,7 +67,7 @@ class Budget:
             ValueError: if no stroke of the box carries the weight: there is no gap then.
         """
         self.objective = HoverObjective([insect], problem)
-        self.best = self.objective.optima[0]
+        self.best = self.objective.flyers.optima[0]
         if not self.best.feasible:
             raise ValueError(
                 f"{insect.name} cannot hover in {problem.name} (largest weight support "

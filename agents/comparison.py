@@ -77,7 +77,7 @@ class Comparison:
             autoreset_mode="DISABLED",
             dtype="float64",
         )
-        self.names = [insect.name for insect in self.env.insects]
+        self.names = list(self.env.flyers.names)
 
     def beat(self, policy: Predictor) -> dict[str, np.ndarray]:
         """The infos of one wingbeat of every insect."""
@@ -95,7 +95,8 @@ class Comparison:
         info, objective = self.beat(policy), self.env.objective
         options = vars(self.env.problem.model)
         results = []
-        for number, insect in enumerate(self.env.insects):
+        for number in range(len(self.names)):
+            insect = self.env.flyers[number]
             stroke = Stroke(**{name: float(info[f"stroke/{name}"][number]) for name in STROKE_PARAMETERS})
             learned, own = evaluate(insect, stroke, **options), evaluate(insect, **options)
             results.append(
@@ -105,7 +106,7 @@ class Comparison:
                     weight_support=learned.weight_support,
                     specific_power=learned.specific_power,
                     gap=objective.gap(number, learned.weight_support, learned.specific_power),
-                    best=objective.optima[number],
+                    best=objective.flyers.optima[number],
                     own_weight_support=own.weight_support,
                     own_specific_power=own.specific_power,
                 )

@@ -36,6 +36,7 @@ class StrokeCoordinates:
         self.box = box
         self.scaling = require_name("action_scaling", scaling, SCALINGS)
         self.names = box.free
+        self._ends: dict[tuple[str, np.dtype], tuple[np.ndarray, np.ndarray]] = {}
         self._uses_tip_speed = scaling == "tip-speed" and {"frequency", "flap_amplitude"} <= set(self.names)
 
     def __len__(self) -> int:
@@ -62,9 +63,9 @@ class StrokeCoordinates:
         inside = xp.clip(points, -1, 1)
         clipped = xp.any(inside != points, axis=-1)
         shape, dtype = points.shape[:-1], as_numpy_type(points)
+        bounds = {name: as_like(points, *self._inside(name, reference, dtype)) for name in STROKE_PARAMETERS}
         values: dict[str, Any] = {}
-        for name in STROKE_PARAMETERS:
-            low, high = as_like(points, *_inside(*self.box.bounds(name, reference), dtype))
+        for name, (low, high) in bounds.items():
             if name not in self.names:
                 values[name] = xp.broadcast_to(low, shape)
                 continue
@@ -74,16 +75,26 @@ class StrokeCoordinates:
                 continue
             values[name] = xp.clip(_between(fraction, low, high, *self._scale(name)), low, high)
         if self._uses_tip_speed:
-            amplitude = values["flap_amplitude"]
-            low, high = as_like(points, *_inside(*self.box.bounds("frequency", reference), dtype))
-            bounds = self.box.bounds("flap_amplitude", reference)
-            first, last = as_like(points, *(np.asarray(bound, dtype) for bound in bounds))
+            (low, high), (first, last) = bounds["frequency"], bounds["flap_amplitude"]
             tip_speed = _between(values["frequency"], low * first, high * last, "log")
-            frequency = tip_speed / amplitude
+            frequency = tip_speed / values["flap_amplitude"]
             values["frequency"] = xp.clip(frequency, low, high)
             slack = 8 * np.finfo(dtype).eps
             clipped = clipped | (xp.abs(values["frequency"] - frequency) > slack * frequency)
         return values, clipped
+
+    def _inside(self, name: str, reference: StrokeReference, dtype: np.dtype) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds in the type of the computation, rounded into the interval: 90° must not become a little more."""
+        if self.box.is_relative(name) and self.box.is_free(name):
+            low, high = (np.asarray(bound, dtype) for bound in self.box.bounds(name, reference))
+            inward = dtype.type(0 if dtype.itemsize == 8 else 2 * np.finfo(dtype).eps)
+            return low * (1 + inward), high * (1 - inward)
+        key = name, dtype
+        if self.box.is_relative(name):
+            return _rounded_inside(*self.box.bounds(name, reference), dtype)
+        if key not in self._ends:
+            self._ends[key] = _rounded_inside(*self.box.bounds(name, reference), dtype)
+        return self._ends[key]
 
     def encode(self, values: Mapping[str, Any], reference: StrokeReference) -> np.ndarray:
         """Points of the cube for strokes, the inverse of `decode` inside the box.
@@ -111,8 +122,8 @@ class StrokeCoordinates:
         return ("linear", 0.0) if self.scaling == "plain" else (row.scale, row.log_floor)
 
 
-def _inside(low: Real, high: Real, dtype: np.dtype) -> tuple[np.ndarray, np.ndarray]:
-    """Bounds in the type of the computation, rounded into the interval: a stroke at 90° must not be a little more."""
+def _rounded_inside(low: Real, high: Real, dtype: np.dtype) -> tuple[np.ndarray, np.ndarray]:
+    """The interval's ends cast to a type, towards the inside."""
     cast_low, cast_high = np.asarray(low, dtype=dtype), np.asarray(high, dtype=dtype)
     cast_low = np.where(cast_low.astype(float) < low, np.nextafter(cast_low, dtype.type(np.inf)), cast_low)
     cast_high = np.where(cast_high.astype(float) > high, np.nextafter(cast_high, dtype.type(-np.inf)), cast_high)

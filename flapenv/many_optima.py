@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, require_count
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.case import HoverCase, hover_case, lift_constant
@@ -64,12 +64,13 @@ class ManyOptima:
     solved_alone: np.ndarray
 
 
-def many_optima(insects: Insect, problem: HoverProblem | str | None = None) -> ManyOptima:
+def many_optima(insects: Insect, problem: HoverProblem | str | None = None, *, points: int = GRID) -> ManyOptima:
     """The least power with which each of many insects hovers in a problem's box.
 
     Args:
         insects: an `Insect` with array fields of shape (n,), as `wing_pool` gives.
         problem: a `HoverProblem` or a name of `PROBLEMS`; problem A where None.
+        points: of the curve that optima lie on, where it is longer than a point; fewer are quicker and rougher.
 
     Returns:
         What `optimum` would return for each, to 1e-6, without the blade element's confirmation.
@@ -80,6 +81,7 @@ def many_optima(insects: Insect, problem: HoverProblem | str | None = None) -> M
 
     Source: derived here (module docstring); bounds as in `lower_bound`.
     """
+    require_count("points", points, low=8)
     problem = as_problem(problem)
     problem.require_suitable(insects.name, insects.reference)
     case = hover_case(insects, problem.model)
@@ -91,9 +93,9 @@ def many_optima(insects: Insect, problem: HoverProblem | str | None = None) -> M
     shared = problem.model.has_proven_bound and problem.model.tip_loss == "reference"
     if shared and not problem.box.is_free("frequency") and not problem.box.is_free("flap_amplitude"):
         if problem.model.profile_drag == 0:
-            on_curve, strokes, multiplier = _fixed(case, problem, count)
+            on_curve, strokes, multiplier = _fixed(case, problem, count, points)
     elif shared and problem.box.is_free("frequency"):
-        on_curve, strokes, multiplier = _free(case, problem, count)
+        on_curve, strokes, multiplier = _free(case, problem, count, points)
     strokes = {name: np.array(np.broadcast_to(values, (count,)), dtype=float) for name, values in strokes.items()}
     if np.any(on_curve):
         weight, power = hover_averages(case, problem.model, **strokes, rule=problem.box.time_rule(tolerance=TOLERANCE))
@@ -145,14 +147,18 @@ class _OnCurve(NamedTuple):
     power: np.ndarray
 
 
-def _on_curve(case: HoverCase, problem: HoverProblem, count: int) -> _OnCurve:
+_Solved = tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]
+"""Which wings lie on the curve, their strokes and multipliers."""
+
+
+def _on_curve(case: HoverCase, problem: HoverProblem, count: int, size: int) -> _OnCurve:
     """Every wing's place on the curve of free frequencies."""
     shapes = shapes_of(problem.box)
     amplitude = _limits(case, problem, "flap_amplitude", count)[1]
     constant = np.broadcast_to(lift_constant(case, problem.model, 1.0, amplitude), (count,))
     ratio = problem.model.profile_drag / constant
     low, high = float(np.min(ratio)), float(np.max(ratio))
-    grid = np.unique(ratio) if count <= GRID else np.linspace(low, high, GRID)
+    grid = np.unique(ratio) if count <= size else np.linspace(low, high, size)
     grid = grid if high > low * (1 + 1e-12) else np.array([low])
     points = curve(problem.box, "free", grid)
     candidates = neighbours(grid, points, ratio)
@@ -172,13 +178,15 @@ def _on_curve(case: HoverCase, problem: HoverProblem, count: int) -> _OnCurve:
 
 def best_frequency(insects: Insect, problem: HoverProblem) -> np.ndarray:
     """Frequency of the best stroke where no bound on it counts, shape (n,) [Hz]."""
-    return _on_curve(hover_case(insects, problem.model), problem, _count(insects)).frequency
+    return _on_curve(hover_case(insects, problem.model), problem, _count(insects), GRID).frequency
 
 
-def _free(case: HoverCase, problem: HoverProblem, count: int) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
+def _free(
+    case: HoverCase, problem: HoverProblem, count: int, size: int
+) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
     """Wings whose best frequency is not below its bounds: which, their strokes and multipliers."""
     shapes = shapes_of(problem.box)
-    amplitude, constant, ratio, point, frequency, power = _on_curve(case, problem, count)
+    amplitude, constant, ratio, point, frequency, power = _on_curve(case, problem, count, size)
     lowest, highest = _limits(case, problem, "frequency", count)
     multiplier = 1.5 * power
     limit, most = largest_lift(problem.box)
@@ -198,7 +206,9 @@ def _free(case: HoverCase, problem: HoverProblem, count: int) -> tuple[np.ndarra
     return (frequency >= lowest) & (frequency <= highest), strokes, multiplier
 
 
-def _fixed(case: HoverCase, problem: HoverProblem, count: int) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
+def _fixed(
+    case: HoverCase, problem: HoverProblem, count: int, size: int
+) -> tuple[np.ndarray, dict[str, np.ndarray], np.ndarray]:
     """Wings of fixed frequency and amplitude without profile drag: all, their strokes and multipliers."""
     shapes, (limit, largest) = shapes_of(problem.box), largest_lift(problem.box)
     frequency, amplitude = (_limits(case, problem, name, count)[1] for name in ("frequency", "flap_amplitude"))
@@ -207,8 +217,8 @@ def _fixed(case: HoverCase, problem: HoverProblem, count: int) -> tuple[np.ndarr
     needed = 1 / (case.lift_scale * constant * speed**2)
     feasible = needed <= largest
     low = float(np.min(needed[feasible], initial=largest))
-    grid = largest - (largest - low) * np.linspace(1, 0, GRID) ** 2  # crowded to the limit of lift
-    if np.sum(feasible) <= GRID:
+    grid = largest - (largest - low) * np.linspace(1, 0, size) ** 2  # crowded to the limit of lift
+    if np.sum(feasible) <= size:
         grid = needed[feasible] if np.any(feasible) else np.array([largest])
     grid = np.unique(np.minimum(grid, largest * (1 - 1e-9)))
     points = curve(problem.box, "fixed", grid)

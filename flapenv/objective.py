@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero.checks import record
-from flapenv.case import HoverCase, hover_case, stack_cases
+from flapenv.case import HoverCase
 from flapenv.insects import Insect
-from flapenv.optimum import Optimum, optimum
 from flapenv.performance import hover_averages
 from flapenv.problem import HoverProblem
+from flapenv.references import Flyers, GapTo
 
 LEAST_PENALTY = 3.0
 """λ "auto" is at least this, so that an agent that explores feels missing lift."""
@@ -19,8 +19,8 @@ INFEASIBLE_PENALTY = 10.0
 """λ where no stroke carries the weight and the aim is the largest weight support."""
 LEAST_GAP_WEIGHT = 10.0
 """The gap charges missing weight support at least this many times its fraction."""
-QUADRATURE_TOLERANCE = 1e-6
-"""Of the averages an environment computes, a little above single precision."""
+QUADRATURE_TOLERANCE = 1e-5
+"""Of the averages an environment computes; in the default box they are ten times better, near single precision."""
 
 
 @record
@@ -35,8 +35,8 @@ class Score:
         lift_term: -λ max(0, 1 - Λ) [-].
         reward: the sum of both terms, not below the problem's floor [-].
         bound_gap: P* over the proven bound, minus one, plus the charge for missing lift [-]; see `has_bound`.
-        optimality_gap: P*/P*_opt - 1 + c max(0, 1 - Λ) [-]; 0 where infeasible, see `feasible`.
-        feasible: whether the insect of the row can hover in the box at all.
+        optimality_gap: P*/P*_opt - 1 + c max(0, 1 - Λ) [-]; 0 where there is none, see `has_gap`.
+        has_gap: whether the optimum of the row's insect is known and hovers.
         has_bound: whether a bound is proven; without one bound_gap is measured from the best stroke.
     """
 
@@ -48,7 +48,7 @@ class Score:
     reward: np.ndarray
     bound_gap: np.ndarray
     optimality_gap: np.ndarray
-    feasible: np.ndarray
+    has_gap: np.ndarray
     has_bound: np.ndarray
 
 
@@ -61,25 +61,36 @@ class HoverObjective:
     are solved when the objective is made, once per process; scoring solves nothing.
     """
 
-    def __init__(self, insects: Sequence[Insect], problem: HoverProblem, dtype: Any = np.float64) -> None:
+    def __init__(
+        self,
+        insects: Sequence[Insect] | Insect,
+        problem: HoverProblem,
+        dtype: Any = np.float64,
+        *,
+        gap_to: GapTo = "optimum",
+        threads: int = 1,
+    ) -> None:
         """Solve the references of every insect.
 
         Args:
-            insects: at least one.
+            insects: at least one, or a pool as `Flyers` takes it.
             problem: the box, the model and the reward's weights.
             dtype: of the arrays that `score` computes with.
+            gap_to: as `Flyers` takes it.
+            threads: how many work at once on large batches.
+
+        Raises:
+            ValueError: as `Flyers` raises it.
         """
-        self.insects, self.problem, self.dtype = tuple(insects), problem, np.dtype(dtype)
-        self.optima: tuple[Optimum, ...] = tuple(optimum(insect, problem) for insect in self.insects)
-        self.cases = stack_cases([hover_case(insect, problem.model) for insect in self.insects])
+        self.problem, self.dtype, self.threads = problem, np.dtype(dtype), threads
+        self.flyers = Flyers(insects, problem, gap_to=gap_to)
         self.rule = problem.box.time_rule(tolerance=QUADRATURE_TOLERANCE)
 
-        feasible = np.array([best.feasible for best in self.optima])
-        bound = np.array([best.reference_power for best in self.optima])
-        best_power = np.array([best.specific_power for best in self.optima])
-        multiplier = np.array([best.multiplier for best in self.optima])
-        self.lift_penalty = self._lift_penalty(feasible, multiplier / bound)
-        charge = np.where(np.isfinite(multiplier), multiplier, 0.0)
+        references = self.flyers.references
+        feasible, bound = references.feasible, references.power
+        best_power = np.where(np.isfinite(references.best_power), references.best_power, bound)
+        self.lift_penalty = self._lift_penalty(feasible, references.multiplier / bound)
+        charge = np.where(np.isfinite(references.multiplier), references.multiplier, 0.0)
         self.gap_charge = np.maximum(LEAST_GAP_WEIGHT, 2 * charge / best_power)
         reference = {
             "bound": bound,
@@ -89,39 +100,42 @@ class HoverObjective:
             "charge": self.gap_charge,
         }
         self._reference = {name: value.astype(self.dtype) for name, value in reference.items()}
-        self._feasible = feasible
-        self._warn_of_a_flat_reward()
+        self._has_gap = feasible & np.isfinite(references.best_power)
+        self._cases = self.cases.spread((len(self.flyers),)).rows(slice(None), self.dtype)
+        self._warn_of_a_flat_reward(np.where(feasible, best_power, 0) / bound)
+
+    @property
+    def cases(self) -> HoverCase:
+        """The numbers of every insect."""
+        return self.flyers.cases
 
     def _lift_penalty(self, feasible: np.ndarray, relative_multiplier: np.ndarray) -> np.ndarray:
         """λ of every insect, in units of its reference power."""
         wanted = self.problem.lift_penalty
         binding = feasible & np.isfinite(relative_multiplier)
+        needed = np.where(binding, relative_multiplier, 0.0)
         if wanted == "auto":
-            exact = np.maximum(LEAST_PENALTY, 2 * np.where(binding, relative_multiplier, 0.0))
-            return np.where(binding, exact, INFEASIBLE_PENALTY)
-        for insect, multiplier in zip(self.insects, np.where(binding, relative_multiplier, 0.0), strict=True):
-            if wanted < multiplier:
-                warnings.warn(
-                    f"lift_penalty = {wanted:g} is below the multiplier {multiplier:.3g} of {insect.name}: the "
-                    "reward's optimum will not carry the weight",
-                    stacklevel=4,
-                )
-        return np.full(len(self.insects), float(wanted))
+            return np.where(binding, np.maximum(LEAST_PENALTY, 2 * needed), INFEASIBLE_PENALTY)
+        for number in _few(np.flatnonzero(wanted < needed)):
+            warnings.warn(
+                f"lift_penalty = {wanted:g} is below the multiplier {needed[number]:.3g} of "
+                f"{self.flyers.names[number]}: the reward's optimum will not carry the weight",
+                stacklevel=4,
+            )
+        return np.full(len(self.flyers), float(wanted))
 
-    def _warn_of_a_flat_reward(self) -> None:
-        """A best reward below the floor would leave nothing to learn from."""
-        for best in self.optima:
-            reward = -best.specific_power / best.reference_power
-            if best.feasible and reward <= self.problem.reward_floor:
-                warnings.warn(
-                    f"reward_floor = {self.problem.reward_floor:g} is above the reward {reward:.3g} of the optimum of "
-                    f"{best.insect}: every stroke that hovers is paid the same; lower reward_floor",
-                    stacklevel=4,
-                )
+    def _warn_of_a_flat_reward(self, best: np.ndarray) -> None:
+        """A best reward below the floor would leave nothing to learn from; best P*/P*_ref of every insect."""
+        for number in _few(np.flatnonzero(-best <= self.problem.reward_floor)):
+            warnings.warn(
+                f"reward_floor = {self.problem.reward_floor:g} is above the reward {-best[number]:.3g} of the optimum "
+                f"of {self.flyers.names[number]}: every stroke that hovers is paid the same; lower reward_floor",
+                stacklevel=4,
+            )
 
     def rows(self, index: np.ndarray) -> HoverCase:
         """The numbers of the insects at `index`, as arrays of the objective's type."""
-        return self.cases.rows(index, self.dtype)
+        return self._cases.rows(index, None)
 
     def score(self, index: np.ndarray, strokes: dict[str, Any]) -> Score:
         """Score one stroke for each row.
@@ -135,7 +149,7 @@ class HoverObjective:
         """
         weight_support, specific_power = hover_averages(self.rows(index), self.problem.model, **strokes, rule=self.rule)
         reference = {name: value[index] for name, value in self._reference.items()}
-        feasible = self._feasible[index]
+        has_gap = self._has_gap[index]
         deficit = np.maximum(0, 1 - weight_support)
         power_term = -specific_power / reference["bound"]
         lift_term = -reference["penalty"] * deficit
@@ -148,15 +162,20 @@ class HoverObjective:
             lift_term=lift_term,
             reward=np.maximum(power_term + lift_term, self.problem.reward_floor),
             bound_gap=-power_term - 1 + reference["bound_charge"] * deficit,
-            optimality_gap=np.where(feasible, gap, 0),
-            feasible=feasible,
-            has_bound=np.full(len(feasible), self.problem.model.has_proven_bound),
+            optimality_gap=np.where(has_gap, gap, 0),
+            has_gap=has_gap,
+            has_bound=np.full(len(has_gap), self.problem.model.has_proven_bound),
         )
 
     def gap(self, number: int, weight_support: float, specific_power: float) -> float | None:
         """The gap of one evaluated stroke of insect `number` to its optimum [-]; None where it is infeasible."""
-        best = self.optima[number]
+        best = self.flyers.optima[number]
         if not best.feasible:
             return None
         deficit = max(0.0, 1 - weight_support)
         return specific_power / best.specific_power - 1 + float(self.gap_charge[number]) * deficit
+
+
+def _few(numbers: np.ndarray) -> list[int]:
+    """At most eight of them: a pool is not warned about wing by wing."""
+    return [int(number) for number in numbers[:8]]

@@ -67,12 +67,16 @@ class StrokeBox:
 
     def bounds(self, name: str, reference: StrokeReference) -> tuple[Real, Real]:
         """Lower and upper bound of a stroke parameter for an insect's own stroke [its SI unit]."""
-        if name not in RELATIVE or getattr(self, f"{name}_ratio") is None:
+        if not self.is_relative(name):
             low, high = getattr(self, name)
             return low, high
         low, high = getattr(self, f"{name}_ratio")
         own = getattr(reference, name)
         return low * own, high * own
+
+    def is_relative(self, name: str) -> bool:
+        """Whether the parameter's bounds go with the insect's own stroke."""
+        return name in RELATIVE and getattr(self, f"{name}_ratio") is not None
 
     def is_free(self, name: str) -> bool:
         """Whether the parameter may vary."""

@@ -15,7 +15,7 @@ from flapenv.objective import HoverObjective
 def reward_of(objective: HoverObjective, points: np.ndarray) -> np.ndarray:
     """Rewards of the first insect at points of the cube, shape (n, axes)."""
     coordinates = StrokeCoordinates(objective.problem.box)
-    values, _ = coordinates.decode(points, objective.insects[0].reference)
+    values, _ = coordinates.decode(points, objective.flyers[0].reference)
     return objective.score(np.zeros(len(points), dtype=int), values).reward
 
 
@@ -118,5 +118,5 @@ def test_an_infeasible_insect_has_no_gap() -> None:
     assert objective.gap(0, 0.5, 10.0) is None
     values, _ = StrokeCoordinates(objective.problem.box).decode(np.zeros((1, 6)), load_insect("hawkmoth").reference)
     score = objective.score(np.zeros(1, dtype=int), values)
-    assert not score.feasible[0]
+    assert not score.has_gap[0]
     assert math.isfinite(score.reward[0])

@@ -20,6 +20,7 @@ LAYERS = (  # each may import itself and what stands after it
     "flapenv.validation",
     "flapenv.envs",
     "flapenv.objective",
+    "flapenv.references",
     "flapenv.trade_off",
     "flapenv.problem_tables",
     "flapenv.wing_pool",

@@ -2,6 +2,7 @@
 
 import inspect
 from abc import abstractmethod
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium as gym
@@ -10,7 +11,7 @@ from gymnasium import error, spaces
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from flapenv.aero.checks import allowed, require_count
+from flapenv.aero.checks import allowed, require_count, require_name
 
 Info = dict[str, Any]
 RENDER_MODES = ("rgb_array",)
@@ -26,6 +27,24 @@ def as_autoreset_mode(value: AutoresetMode | str) -> AutoresetMode:
         if value in (mode, mode.name, mode.value):
             return mode
     raise ValueError(f"autoreset_mode = {value!r} is unknown; {allowed(value, [m.name for m in AutoresetMode])}")
+
+
+InfoChoice = str | Sequence[str]
+"""Which infos are wanted: "all", "none" or their keys."""
+
+
+def require_infos(infos: Any, known: tuple[str, ...]) -> tuple[str, ...]:
+    """The keys of the infos that are wanted.
+
+    Raises:
+        TypeError: for another kind of value.
+        ValueError: for an unknown key.
+    """
+    if isinstance(infos, str):
+        return known if require_name("infos", infos, ("all", "none")) == "all" else ()
+    if not isinstance(infos, Sequence):
+        raise TypeError(f"infos = {infos!r} is not allowed; allowed: 'all', 'none' or a list of keys")
+    return tuple(require_name("infos key", key, known) for key in infos)
 
 
 def require_render_mode(value: str | None) -> str | None:
@@ -105,6 +124,23 @@ def refuse_unknown(unknown: dict[str, Any], environment: type, *, hidden: tuple[
         raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
 
 
+def refuse_unused(arguments: dict[str, Any], environment: type, when: str) -> None:
+    """Refuse arguments that differ from their defaults and would change nothing.
+
+    Args:
+        arguments: by name.
+        environment: whose constructor holds the defaults.
+        when: what they belong to.
+
+    Raises:
+        ValueError: for the first of them.
+    """
+    known = inspect.signature(environment).parameters
+    for name, value in arguments.items():
+        if value != known[name].default:
+            raise ValueError(f"{name} = {value!r} belongs to {when} and would change nothing; allowed: leave it out")
+
+
 class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     """A vector environment that computes all of its rows at once.
 
@@ -118,6 +154,7 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
 
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 2}
     reset_options: tuple[str, ...] = ()
+    info_keys: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -127,8 +164,13 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         single_action_space: spaces.Box,
         autoreset_mode: AutoresetMode | str,
         render_mode: str | None,
+        infos: InfoChoice = "all",
+        reward_space: spaces.Box | None = None,
     ) -> None:
-        """Set the spaces and the mode; no episode has begun yet."""
+        """Set the spaces and the mode; no episode has begun yet.
+
+        `reward_space` is None for scalar rewards, else a Box of shape (k,), and rewards have shape (num_envs, k).
+        """
         self.num_envs = require_count("num_envs", num_envs)
         self.autoreset_mode = as_autoreset_mode(autoreset_mode)
         self.render_mode = require_render_mode(render_mode)
@@ -139,6 +181,9 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.single_observation_space, self.single_action_space = single_observation_space, single_action_space
         self.observation_space = batch_space(single_observation_space, num_envs)
         self.action_space = batch_space(single_action_space, num_envs)
+        self.infos = require_infos(infos, self.info_keys)
+        self._unwanted = frozenset(self.info_keys) - frozenset(self.infos)
+        self.reward_space = reward_space
         self._ended = np.ones(num_envs, dtype=bool)
         self._begun = False
 
@@ -187,7 +232,7 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         info = self._begin(mask, options)
         self._ended[mask] = False
         self._begun = True
-        return self._observe(), _masked(info, mask)
+        return self._observe(), self._masked(info, mask)
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
         """One wingbeat in every row, with the autoreset of the environment's mode.
@@ -215,25 +260,28 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         acting = ~ended
         if acting.any():
             rewards, terminations, truncations, beat_info = self._beat(actions, acting)
-            rewards = np.where(acting, rewards, 0.0).astype(np.float64)
-            terminations, truncations = terminations & acting, truncations & acting
-            info = _masked(beat_info, acting)
+            rewards = rewards.astype(np.float64)
+            if ended.any():
+                rewards[ended] = 0.0
+                terminations, truncations = terminations & acting, truncations & acting
+            info = self._masked(beat_info, acting)
         else:
-            rewards, none = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=bool)
+            shape = () if self.reward_space is None else self.reward_space.shape or ()
+            rewards, none = np.zeros((self.num_envs, *shape)), np.zeros(self.num_envs, dtype=bool)
             terminations, truncations = none, none.copy()
         finished = terminations | truncations
         if self.autoreset_mode is AutoresetMode.SAME_STEP and finished.any():
             final = {
                 "final_obs": self._observe(),
                 "_final_obs": finished.copy(),
-                "final_info": _masked(info, finished),
+                "final_info": self._masked(info, finished),
                 "_final_info": finished.copy(),
             }
-            going_on = {} if finished.all() else _masked(info, ~finished)
-            info = _merged(going_on, _masked(self._begin(finished, {}), finished)) | final
+            going_on = {} if finished.all() else self._masked(info, ~finished)
+            info = _merged(going_on, self._masked(self._begin(finished, {}), finished)) | final
             finished = np.zeros_like(finished)
         elif ended.any():
-            info = _merged(info, _masked(self._begin(ended, {}), ended))
+            info = _merged(info, self._masked(self._begin(ended, {}), ended))
         self._ended = finished.copy()
         return self._observe(), rewards, terminations, truncations, info
 
@@ -251,16 +299,15 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
             )
         return mask.copy()
 
-
-def _masked(info: Info, mask: np.ndarray) -> Info:
-    """Infos as Gymnasium's vector environments give them: each array beside `_key`, the rows that have it."""
-    masked: Info = {}
-    for key, value in info.items():
-        if not key.startswith("_"):
-            own = info.get(f"_{key}")
-            masked[key] = value
-            masked[f"_{key}"] = mask.copy() if own is None else mask & own
-    return masked
+    def _masked(self, info: Info, mask: np.ndarray) -> Info:
+        """The wanted infos as Gymnasium's vector environments give them: each array beside `_key`, where it counts."""
+        masked: Info = {}
+        for key, value in info.items():
+            if not key.startswith("_") and key not in self._unwanted:
+                own = info.get(f"_{key}")
+                masked[key] = value
+                masked[f"_{key}"] = mask.copy() if own is None else mask & own
+        return masked
 
 
 def _merged(first: Info, second: Info) -> Info:

@@ -8,8 +8,15 @@ from flapenv.aero.checks import require_name
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.optimum import optimum
 from flapenv.problem import HoverProblem
+from flapenv.wing_pool import Split, wing_pool
 
 InsectChoice = str | Insect | Mapping[str, Any] | Sequence[Any]
+
+
+RANDOM_WING = "random-wing"
+"""In place of a name: wings of a pool."""
+LEAST_WEIGHT_SUPPORT = 1.05
+"""Λ_max of a random wing at least, where its frequency is fixed and many could not hover."""
 
 
 def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infeasible: bool) -> tuple[Insect, ...]:
@@ -25,7 +32,7 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
         ValueError: for an unknown name, no insect at all, or "all" where none is feasible.
     """
     if isinstance(choice, str):
-        require_name("insect", choice, ("all", *INSECTS))
+        require_name("insect", choice, ("all", RANDOM_WING, *INSECTS))
     everyone = choice == "all"
     if everyone:
         insects = tuple(load_insect(name) for name in INSECTS)
@@ -51,3 +58,16 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
     if not insects:
         raise ValueError("insect = 'all' leaves no insect: none can hover in the box; see include_infeasible=True")
     return insects
+
+
+def choose_pool(problem: HoverProblem, *, size: int, seed: int, split: Split, leave_out: Insect | str | None) -> Insect:
+    """The pool that "random-wing" draws from, an insect with array fields; arguments as `wing_pool`'s."""
+    fixed = not problem.box.is_free("frequency")
+    return wing_pool(
+        size,
+        seed=seed,
+        split=split,
+        leave_out=leave_out,
+        min_weight_support=LEAST_WEIGHT_SUPPORT if fixed else None,
+        problem=problem,
+    )

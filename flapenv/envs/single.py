@@ -35,6 +35,7 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
         make: Any = self.batch_class  # each member has arguments of its own
         self.batch: BatchEnv = make(1, autoreset_mode=AutoresetMode.DISABLED, render_mode=render_mode, **arguments)
         self.render_mode = self.batch.render_mode
+        self.reward_space = self.batch.reward_space
         self.observation_space = self.batch.single_observation_space
         self.action_space = self.batch.single_action_space
 
@@ -50,8 +51,10 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
         observation, info = self.batch.reset(options=options)
         return observation[0], _first_row(info)
 
-    def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, Info]:
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, Any, bool, bool, Info]:
         """One wingbeat; infos are plain Python values, None where a value does not exist.
+
+        The reward is a float, or an array where the environment was made for a vector.
 
         Args:
             action: shape (n,), finite.
@@ -64,7 +67,8 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
         observation, reward, terminated, truncated, info = self.batch.step(
             checked_actions("action", action, self.action_space.shape)[None]
         )
-        return observation[0], float(reward[0]), bool(terminated[0]), bool(truncated[0]), _first_row(info)
+        own = float(reward[0]) if self.reward_space is None else reward[0]
+        return observation[0], own, bool(terminated[0]), bool(truncated[0]), _first_row(info)
 
     def render(self) -> np.ndarray | None:
         """The last wingbeat as a picture (height, width, 3) of uint8; None without a render mode."""

@@ -26,6 +26,7 @@ INFO_KEYS = {
     "weight_support",
     "specific_power",
     "lift_deficit",
+    "cost",
     "reward/power",
     "reward/lift",
     "stroke/frequency",
@@ -128,9 +129,9 @@ def test_an_insect_of_ones_own_works_as_record_and_as_dict_and_in_a_spec() -> No
     _, info = env.reset(seed=1)
     assert info["insect"] == "robot"
     env.step(env.action_space.sample())
-    assert HoverEnv(insect=dataclasses.asdict(ROBOT)).batch.insects == (ROBOT,)
+    assert HoverEnv(insect=dataclasses.asdict(ROBOT)).batch.flyers[0] == ROBOT
     spec = EnvSpec.from_json(gym.make("flapenv/Hover-v0", insect=dataclasses.asdict(ROBOT)).spec.to_json())
-    assert gym.make(spec).unwrapped.batch.insects == (ROBOT,)
+    assert gym.make(spec).unwrapped.batch.flyers[0] == ROBOT
 
 
 def test_several_insects_are_drawn_from_and_names_must_differ() -> None:
@@ -183,9 +184,9 @@ def test_an_infeasible_insect_is_kept_alone_and_left_out_of_all_with_a_warning()
     some = {"box": {"frequency_ratio": (0.3, 0.45)}}
     with pytest.warns(UserWarning, match=r"ladybird \(largest .*: left out"):
         env = HoverEnv(problem=some)
-    assert 0 < len(env.batch.insects) < 8
+    assert 0 < len(env.batch.flyers) < 8
     with pytest.warns(UserWarning, match="kept"):
-        assert len(HoverEnv(problem=some, include_infeasible=True).batch.insects) == 8
+        assert len(HoverEnv(problem=some, include_infeasible=True).batch.flyers) == 8
     with pytest.warns(UserWarning, match="left out"), pytest.raises(ValueError, match="leaves no insect"):
         HoverEnv(problem={"box": {"frequency_ratio": (0.01, 0.02)}})
 
@@ -193,7 +194,7 @@ def test_an_infeasible_insect_is_kept_alone_and_left_out_of_all_with_a_warning()
 @pytest.mark.parametrize(
     ("arguments", "kind", "said"),
     [
-        ({"insect": "moth"}, ValueError, "insect = 'moth' is unknown; allowed: all, fruitfly"),
+        ({"insect": "moth"}, ValueError, "insect = 'moth' is unknown; allowed: all, random-wing, fruitfly"),
         ({"insect": 3}, TypeError, "insect = 3"),
         ({"problem": "free"}, ValueError, "problem = 'free' is unknown; allowed: free-frequency"),
         ({"problem": {"boxes": 1}}, TypeError, "did you mean 'box'"),
