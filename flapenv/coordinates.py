@@ -1,5 +1,6 @@
 """Action coordinates: strokes of a box as points of the cube [-1, 1]^n, shared by environments and optimisers."""
 
+import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
@@ -8,7 +9,7 @@ import numpy as np
 from flapenv.aero.arrays import Real, as_arrays, as_like, as_numpy_type
 from flapenv.aero.checks import require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
-from flapenv.problem import StrokeBox
+from flapenv.problem import RELATIVE, Interval, StrokeBox
 
 Scaling = Literal["tip-speed", "log", "plain"]
 SCALINGS: tuple[Scaling, ...] = ("tip-speed", "log", "plain")
@@ -36,8 +37,16 @@ class StrokeCoordinates:
         self.box = box
         self.scaling = require_name("action_scaling", scaling, SCALINGS)
         self.names = box.free
-        self._ends: dict[tuple[str, np.dtype], tuple[np.ndarray, np.ndarray]] = {}
         self._uses_tip_speed = scaling == "tip-speed" and {"frequency", "flap_amplitude"} <= set(self.names)
+        units = StrokeReference(1.0, 1.0)  # relative bounds are multiples of the own stroke until the end
+        self._axes: dict[str, _Axis] = {}
+        for name, row in STROKE_PARAMETERS.items():
+            scale, floor = ("linear", 0.0) if scaling == "plain" else (row.scale, row.log_floor)
+            self._axes[name] = _Axis(*box.bounds(name, units), scale, floor)
+        if self._uses_tip_speed:
+            frequency, amplitude = self._axes["frequency"], self._axes["flap_amplitude"]
+            self._axes["frequency"] = _Axis(frequency.low * amplitude.low, frequency.high * amplitude.high, "log", 0.0)
+        self._bounds: dict[np.dtype, dict[str, Interval]] = {}
 
     def __len__(self) -> int:
         """Number of axes."""
@@ -62,39 +71,38 @@ class StrokeCoordinates:
         xp, points = as_arrays(points)
         inside = xp.clip(points, -1, 1)
         clipped = xp.any(inside != points, axis=-1)
-        shape, dtype = points.shape[:-1], as_numpy_type(points)
-        bounds = {name: as_like(points, *self._inside(name, reference, dtype)) for name in STROKE_PARAMETERS}
+        dtype = as_numpy_type(points)
+        bounds = self._bounds.get(dtype) or self._bounds.setdefault(dtype, self._inside(dtype))
         values: dict[str, Any] = {}
         for name, (low, high) in bounds.items():
             if name not in self.names:
-                values[name] = xp.broadcast_to(low, shape)
+                values[name] = xp.full_like(inside[..., 0], low)
                 continue
-            fraction = (inside[..., self.names.index(name)] + 1) / 2
-            if name == "frequency" and self._uses_tip_speed:
-                values[name] = fraction  # awaits φmax
-                continue
-            values[name] = xp.clip(_between(fraction, low, high, *self._scale(name)), low, high)
+            value = self._axes[name].value((inside[..., self.names.index(name)] + 1) / 2, xp)
+            values[name] = value if name == "frequency" and self._uses_tip_speed else xp.clip(value, low, high)
         if self._uses_tip_speed:
-            (low, high), (first, last) = bounds["frequency"], bounds["flap_amplitude"]
-            tip_speed = _between(values["frequency"], low * first, high * last, "log")
-            frequency = tip_speed / values["flap_amplitude"]
-            values["frequency"] = xp.clip(frequency, low, high)
+            frequency = values["frequency"] / values["flap_amplitude"]
+            values["frequency"] = xp.clip(frequency, *bounds["frequency"])
             slack = 8 * np.finfo(dtype).eps
             clipped = clipped | (xp.abs(values["frequency"] - frequency) > slack * frequency)
+        for name in RELATIVE:
+            if self.box.is_relative(name):
+                values[name] = values[name] * as_like(points, np.asarray(getattr(reference, name)))[0]
         return values, clipped
 
-    def _inside(self, name: str, reference: StrokeReference, dtype: np.dtype) -> tuple[np.ndarray, np.ndarray]:
-        """Bounds in the type of the computation, rounded into the interval: 90° must not become a little more."""
-        if self.box.is_relative(name) and self.box.is_free(name):
-            low, high = (np.asarray(bound, dtype) for bound in self.box.bounds(name, reference))
-            inward = dtype.type(0 if dtype.itemsize == 8 else 2 * np.finfo(dtype).eps)
-            return low * (1 + inward), high * (1 - inward)
-        key = name, dtype
-        if self.box.is_relative(name):
-            return _rounded_inside(*self.box.bounds(name, reference), dtype)
-        if key not in self._ends:
-            self._ends[key] = _rounded_inside(*self.box.bounds(name, reference), dtype)
-        return self._ends[key]
+    def _inside(self, dtype: np.dtype) -> dict[str, Interval]:
+        """Bounds that no stroke leaves in the type of the computation: 90° must not become a little more."""
+        inside = {}
+        for name in STROKE_PARAMETERS:
+            low, high = self.box.bounds(name, StrokeReference(1.0, 1.0))
+            ends = dtype.type(low), dtype.type(high)
+            inwards = np.inf if float(ends[0]) < low else ends[0], -np.inf if float(ends[1]) > high else ends[1]
+            first, last = (float(np.nextafter(end, dtype.type(to))) for end, to in zip(ends, inwards, strict=True))
+            if self.box.is_relative(name) and dtype.itemsize < 8:  # what they are multiplied with is rounded too
+                slack = 2 * float(np.finfo(dtype).eps)
+                first, last = first * (1 + slack), last * (1 - slack)
+            inside[name] = (min(first, last), last)
+        return inside
 
     def encode(self, values: Mapping[str, Any], reference: StrokeReference) -> np.ndarray:
         """Points of the cube for strokes, the inverse of `decode` inside the box.
@@ -106,54 +114,39 @@ class StrokeCoordinates:
         Returns:
             Points, shape (..., n), clipped to the cube.
         """
-        axes = []
-        for name in self.names:
-            low, high = self.box.bounds(name, reference)
-            value = values[name]
-            if name == "frequency" and self._uses_tip_speed:
-                first, last = self.box.bounds("flap_amplitude", reference)
-                value, low, high = value * values["flap_amplitude"], low * first, high * last
-            axes.append(np.clip(2 * _fraction(value, low, high, *self._scale(name)) - 1, -1, 1))
+        units = {
+            name: value / np.asarray(getattr(reference, name)) if self.box.is_relative(name) else np.asarray(value)
+            for name, value in values.items()
+        }
+        if self._uses_tip_speed:
+            units["frequency"] = units["frequency"] * units["flap_amplitude"]
+        axes = [np.clip(2 * self._axes[name].fraction(units[name]) - 1, -1, 1) for name in self.names]
         return np.stack(np.broadcast_arrays(*axes), axis=-1) if axes else np.zeros((0,))
 
-    def _scale(self, name: str) -> tuple[str, float]:
-        """The scale of an axis and the floor of its logarithm."""
-        row = STROKE_PARAMETERS[name]
-        return ("linear", 0.0) if self.scaling == "plain" else (row.scale, row.log_floor)
 
+class _Axis:
+    """How a parameter runs from one bound to the other."""
 
-def _rounded_inside(low: Real, high: Real, dtype: np.dtype) -> tuple[np.ndarray, np.ndarray]:
-    """The interval's ends cast to a type, towards the inside."""
-    cast_low, cast_high = np.asarray(low, dtype=dtype), np.asarray(high, dtype=dtype)
-    cast_low = np.where(cast_low.astype(float) < low, np.nextafter(cast_low, dtype.type(np.inf)), cast_low)
-    cast_high = np.where(cast_high.astype(float) > high, np.nextafter(cast_high, dtype.type(-np.inf)), cast_high)
-    return np.minimum(cast_low, cast_high), cast_high
+    def __init__(self, low: float, high: float, scale: str, floor: float) -> None:
+        """Bounds, "linear", "log" or "log-complement", and how near a logarithm may come to its pole."""
+        self.low, self.high, self.scale = low, high, scale
+        first, last = (1 - low, 1 - high) if scale == "log-complement" else (low, high)
+        # nothing is shifted unless an end lies nearer to the pole than the floor
+        self.shift = floor if min(first, last) < floor else 0.0
+        if scale != "linear" and low < high:
+            self.start = math.log(first + self.shift)
+            self.span = math.log(last + self.shift) - self.start
 
+    def value(self, fraction: Any, xp: Any) -> Any:
+        """The value a fraction of the way; arrays or tensors of the library `xp`."""
+        if self.scale == "linear":
+            return self.low + (self.high - self.low) * fraction
+        run = xp.exp(self.start + self.span * fraction) - self.shift
+        return 1 - run if self.scale == "log-complement" else run
 
-def _between(fraction: Real, low: Real, high: Real, scale: str, floor: float = 0.0) -> Real:
-    """The value a fraction of the way from `low` to `high` along a scale."""
-    xp, fraction, low, high = as_arrays(fraction, low, high)
-    if scale == "linear":
-        return low + (high - low) * fraction
-    if scale == "log-complement":
-        return 1 - _between(fraction, 1 - low, 1 - high, "log", floor)
-    shift = _shift(low, high, floor)
-    start, stop = xp.log(low + shift), xp.log(high + shift)
-    return xp.exp(start + (stop - start) * fraction) - shift
-
-
-def _fraction(value: np.ndarray, low: np.ndarray, high: np.ndarray, scale: str, floor: float = 0.0) -> np.ndarray:
-    """The inverse of `_between`."""
-    if scale == "linear":
-        return (value - low) / (high - low)
-    if scale == "log-complement":
-        return _fraction(1 - value, 1 - low, 1 - high, "log", floor)
-    shift = _shift(low, high, floor)
-    return np.log((value + shift) / (low + shift)) / np.log((high + shift) / (low + shift))
-
-
-def _shift(low: Real, high: Real, floor: float) -> Real:
-    """What keeps a log scale off its pole: nothing, unless an end lies nearer to it than the floor."""
-    xp, low, high = as_arrays(low, high)
-    least = xp.minimum(low, high)
-    return xp.where(least < floor, floor + 0 * least, 0 * least)
+    def fraction(self, value: np.ndarray) -> np.ndarray:
+        """The inverse of `value`."""
+        if self.scale == "linear":
+            return (value - self.low) / (self.high - self.low)
+        run = 1 - value if self.scale == "log-complement" else value
+        return (np.log(run + self.shift) - self.start) / self.span

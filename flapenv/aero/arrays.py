@@ -34,6 +34,9 @@ def as_arrays(*values: Real) -> tuple[Any, ...]:
     Returns:
         The array library followed by the converted values, in order.
     """
+    dtype = _common_type(values)
+    if dtype is not None:  # nearly always, and several times a wingbeat
+        return (np, *(v if type(v) is np.ndarray else np.asarray(v, dtype=dtype) for v in values))
     tensors = [value for value in values if is_tensor(value)]
     if tensors:
         torch: ModuleType = sys.modules["torch"]
@@ -46,6 +49,20 @@ def as_arrays(*values: Real) -> tuple[Any, ...]:
     if dtype == np.float16:  # Python scalars alone carry no type
         dtype = np.dtype(float)
     return (np, *(np.asarray(value, dtype=dtype) for value in values))
+
+
+def _common_type(values: tuple[Real, ...]) -> np.dtype | None:
+    """The floating type that all arrays among arrays and Python numbers share; None in any other case."""
+    dtype = None
+    for value in values:
+        if type(value) is np.ndarray:
+            if dtype is None:
+                dtype = value.dtype
+            elif value.dtype != dtype:
+                return None
+        elif type(value) is not float and type(value) is not int:
+            return None
+    return dtype if dtype is not None and dtype.kind == "f" and dtype.itemsize > 2 else None
 
 
 def as_like(reference: Real, *values: np.ndarray) -> tuple[Real, ...]:

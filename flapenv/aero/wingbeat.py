@@ -107,7 +107,8 @@ def speed_averages(
     constants = law.constants if law else {}
     xp, *fields = as_arrays(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, *constants.values())
     shape = np.broadcast_shapes(*(field.shape for field in fields))
-    rows = [xp.broadcast_to(field, shape).reshape(-1) for field in fields]
+    rows = [field if field.shape == shape else xp.broadcast_to(field, shape) for field in fields]
+    rows = rows if len(shape) == 1 else [row.reshape(-1) for row in rows]
     fractions, weights = as_like(rows[3], *rule.points)
     count = rows[0].shape[0]
     if law is None and not is_tensor(rows[0]):

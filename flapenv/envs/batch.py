@@ -182,7 +182,9 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.observation_space = batch_space(single_observation_space, num_envs)
         self.action_space = batch_space(single_action_space, num_envs)
         self.infos = require_infos(infos, self.info_keys)
-        self._unwanted = frozenset(self.info_keys) - frozenset(self.infos)
+        self.unwanted = frozenset(self.info_keys) - frozenset(self.infos)
+        self._everyone = np.ones(num_envs, dtype=bool)
+        self._everyone.flags.writeable = False
         self.reward_space = reward_space
         self._ended = np.ones(num_envs, dtype=bool)
         self._begun = False
@@ -229,10 +231,41 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         mask = self._reset_mask(options.pop("reset_mask", None))
         if not self._begun and not mask.all():
             raise error.ResetNeeded("the first reset must be of all rows, without options['reset_mask']")
+        info = self._open(mask, options)
+        return self._observe(), self._masked(info, mask)
+
+    def start(self, options: dict[str, Any]) -> tuple[np.ndarray, Info]:
+        """New episodes in all rows, with checked options: observations and unmasked infos."""
+        info = self._open(self._everyone, options)
+        return self._observe(), info
+
+    def _open(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
+        """New episodes in the rows of a mask, and the flags that go with them."""
         info = self._begin(mask, options)
         self._ended[mask] = False
         self._begun = True
-        return self._observe(), self._masked(info, mask)
+        return info
+
+    def advance(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
+        """One wingbeat in every row, with checked actions and no autoreset: as `step`, but for unmasked infos.
+
+        Raises:
+            gymnasium.error.ResetNeeded: where a row has not begun or has ended.
+        """
+        self._require_running()
+        rewards, terminations, truncations, info = self._beat(actions, self._everyone)
+        self._ended = terminations | truncations
+        return self._observe(), rewards.astype(np.float64), terminations, truncations, info
+
+    def _require_running(self) -> None:
+        """Refuse to step rows that have not begun, or have ended."""
+        if not self._begun:
+            raise error.ResetNeeded("call reset() before the first step()")
+        if self._ended.any():
+            raise error.ResetNeeded(
+                f"rows {np.flatnonzero(self._ended)[:8].tolist()} have ended; reset them with "
+                "options={'reset_mask': mask}"
+            )
 
     def step(self, actions: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
         """One wingbeat in every row, with the autoreset of the environment's mode.
@@ -248,41 +281,40 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
             ValueError: for actions of another shape, or with NaN or inf.
             gymnasium.error.ResetNeeded: before the first reset, or where a row has ended and the mode is DISABLED.
         """
-        if not self._begun:
-            raise error.ResetNeeded("call reset() before the first step()")
+        if not self._begun or self.autoreset_mode is AutoresetMode.DISABLED:
+            self._require_running()
         actions = checked_actions("actions", actions, self.action_space.shape)
-        ended = self._ended.copy()
-        if self.autoreset_mode is AutoresetMode.DISABLED and ended.any():
-            raise error.ResetNeeded(
-                f"rows {np.flatnonzero(ended)[:8].tolist()} have ended; reset them with options={{'reset_mask': mask}}"
-            )
-        info: Info = {}
-        acting = ~ended
-        if acting.any():
-            rewards, terminations, truncations, beat_info = self._beat(actions, acting)
-            rewards = rewards.astype(np.float64)
-            if ended.any():
-                rewards[ended] = 0.0
-                terminations, truncations = terminations & acting, truncations & acting
-            info = self._masked(beat_info, acting)
-        else:
-            shape = () if self.reward_space is None else self.reward_space.shape or ()
-            rewards, none = np.zeros((self.num_envs, *shape)), np.zeros(self.num_envs, dtype=bool)
-            terminations, truncations = none, none.copy()
-        finished = terminations | truncations
+        if self._ended.any():
+            return self._step_and_reset(actions)
+        observations, rewards, terminations, truncations, beat_info = self.advance(actions)
+        info, finished = self._masked(beat_info, self._everyone), self._ended.copy()
         if self.autoreset_mode is AutoresetMode.SAME_STEP and finished.any():
             final = {
-                "final_obs": self._observe(),
+                "final_obs": observations,
                 "_final_obs": finished.copy(),
                 "final_info": self._masked(info, finished),
                 "_final_info": finished.copy(),
             }
             going_on = {} if finished.all() else self._masked(info, ~finished)
-            info = _merged(going_on, self._masked(self._begin(finished, {}), finished)) | final
-            finished = np.zeros_like(finished)
-        elif ended.any():
-            info = _merged(info, self._masked(self._begin(ended, {}), ended))
-        self._ended = finished.copy()
+            info = _merged(going_on, self._masked(self._open(finished, {}), finished)) | final
+            observations = self._observe()
+        return observations, rewards, terminations, truncations, info
+
+    def _step_and_reset(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Info]:
+        """NEXT_STEP after an episode's end: rows that ended are reset, the others beat."""
+        ended = self._ended.copy()
+        running = ~ended
+        info: Info = {}
+        shape = () if self.reward_space is None else self.reward_space.shape or ()
+        rewards, none = np.zeros((self.num_envs, *shape)), np.zeros(self.num_envs, dtype=bool)
+        terminations, truncations = none, none.copy()
+        if running.any():
+            own, terminations, truncations, beat_info = self._beat(actions, running)
+            rewards[running] = own[running]
+            terminations, truncations = terminations & running, truncations & running
+            info = self._masked(beat_info, running)
+        info = _merged(info, self._masked(self._open(ended, {}), ended))
+        self._ended = terminations | truncations
         return self._observe(), rewards, terminations, truncations, info
 
     def _reset_mask(self, mask: Any) -> np.ndarray:
@@ -303,7 +335,7 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         """The wanted infos as Gymnasium's vector environments give them: each array beside `_key`, where it counts."""
         masked: Info = {}
         for key, value in info.items():
-            if not key.startswith("_") and key not in self._unwanted:
+            if not key.startswith("_") and key not in self.unwanted:
                 own = info.get(f"_{key}")
                 masked[key] = value
                 masked[f"_{key}"] = mask.copy() if own is None else mask & own

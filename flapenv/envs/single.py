@@ -6,7 +6,15 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from flapenv.envs.batch import BatchEnv, Info, arguments_of, checked_actions, refuse_unknown, require_seed
+from flapenv.envs.batch import (
+    BatchEnv,
+    Info,
+    arguments_of,
+    checked_actions,
+    refuse_unknown,
+    require_options,
+    require_seed,
+)
 
 BATCH_ONLY = ("num_envs", "autoreset_mode")
 """Arguments of a batch that a single environment has no use for."""
@@ -48,8 +56,8 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
         """
         super().reset(seed=require_seed(seed))
         self.batch.np_random = self.np_random
-        observation, info = self.batch.reset(options=options)
-        return observation[0], _first_row(info)
+        observations, info = self.batch.start(require_options(options, self.batch.reset_options))
+        return observations[0], self._plain(info)
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, Any, bool, bool, Info]:
         """One wingbeat; infos are plain Python values, None where a value does not exist.
@@ -64,23 +72,23 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
             ValueError: for an action of another shape, or with NaN or inf.
             gymnasium.error.ResetNeeded: before a reset, and after the end of an episode.
         """
-        observation, reward, terminated, truncated, info = self.batch.step(
-            checked_actions("action", action, self.action_space.shape)[None]
-        )
-        own = float(reward[0]) if self.reward_space is None else reward[0]
-        return observation[0], own, bool(terminated[0]), bool(truncated[0]), _first_row(info)
+        action = checked_actions("action", action, self.action_space.shape)
+        observations, rewards, terminations, truncations, info = self.batch.advance(action[None])
+        reward = float(rewards[0]) if self.reward_space is None else rewards[0]
+        return observations[0], reward, bool(terminations[0]), bool(truncations[0]), self._plain(info)
 
     def render(self) -> np.ndarray | None:
         """The last wingbeat as a picture (height, width, 3) of uint8; None without a render mode."""
         frames: Any = self.batch.render()
         return None if frames is None else frames[0]
 
-
-def _first_row(info: Info) -> Info:
-    """The infos of a batch of one as plain Python values; None where the row has no value."""
-    row: Info = {}
-    for key, value in info.items():
-        if not key.startswith("_"):
-            element = value[0]
-            row[key] = (element.item() if isinstance(element, np.generic) else element) if info[f"_{key}"][0] else None
-    return row
+    def _plain(self, info: Info) -> Info:
+        """The wanted infos of a batch of one as plain Python values; None where the row has no value."""
+        row: Info = {}
+        for key, value in info.items():
+            if key[0] != "_" and key not in self.batch.unwanted:
+                element, present = value[0], info.get(f"_{key}")
+                row[key] = element.item() if isinstance(element, np.generic) else element
+                if present is not None and not present[0]:
+                    row[key] = None
+        return row
