@@ -7,8 +7,12 @@ vectorised NumPy, one wingbeat at a time. `make bench` sets one thread.
 
 import os
 import platform
+import resource
+import subprocess
+import sys
 import time
 from collections.abc import Callable
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -18,12 +22,13 @@ from flapenv.aero.induced import k_ind
 from flapenv.aero.parameters import StrokeReference
 from flapenv.case import hover_case
 from flapenv.coordinates import StrokeCoordinates
+from flapenv.objective import QUADRATURE_TOLERANCE
 from flapenv.performance import hover_averages
 from flapenv.simulation import evaluate_by_blade_element
 from flapenv.tables import text_table
 
 SECONDS, REPETITIONS = 0.7, 3
-ROWS = 4096
+ROWS, MANY, MILLION = 4096, 100_000, 1_000_000
 
 
 def baseline() -> None:
@@ -52,20 +57,46 @@ def rate(work: Callable[[], object], wingbeats: int) -> float:
     return best
 
 
+def fast_path(rows: int) -> tuple[Callable[[int], Any], float]:
+    """The averages of random strokes of the default box in single precision, as a function of the threads.
+
+    Returns:
+        The work, and its largest relative error against double precision with far more nodes.
+    """
+    hawkmoth, problem = load_insect("hawkmoth"), HoverProblem()
+    points = np.random.default_rng(0).uniform(-1, 1, (rows, 6)).astype(np.float32)
+    values: dict[str, Any]
+    values, _ = StrokeCoordinates(problem.box).decode(points, StrokeReference(26.3, 1.0))
+    case = hover_case(hawkmoth, problem.model)
+    single, rule = case.rows(np.newaxis, np.float32), problem.box.time_rule(tolerance=QUADRATURE_TOLERANCE)
+
+    def work(threads: int) -> Any:
+        return hover_averages(single, problem.model, **values, rule=rule, threads=threads)
+
+    some: dict[str, Any] = {name: value[:ROWS].astype(float) for name, value in values.items()}
+    exact = hover_averages(case, problem.model, **some, rule=rule.refined(4))
+    error = max(float(np.max(np.abs(ours[:ROWS] / own - 1))) for ours, own in zip(work(1), exact, strict=True))
+    return work, error
+
+
+def stepping(name: str, rows: int = ROWS, **arguments: Any) -> Callable[[], object]:
+    """Steps of a vector environment with one random action a row."""
+    batch = gym.make_vec(name, num_envs=rows, autoreset_mode="SAME_STEP", **arguments)
+    batch.reset(seed=0)
+    batch.action_space.seed(0)
+    actions = batch.action_space.sample()
+    return lambda: batch.step(actions)
+
+
 def cases() -> list[tuple[str, Callable[[], object], int]]:
     """What is measured: a name, the work and how many wingbeats it is."""
-    hawkmoth, problem = load_insect("hawkmoth"), HoverProblem()
-    points = np.random.default_rng(0).uniform(-1, 1, (ROWS, 6)).astype(np.float32)
-    values, _ = StrokeCoordinates(problem.box).decode(points, StrokeReference(26.3, 1.0))
-    double = {name: value.astype(float) for name, value in values.items()}
-    rule = problem.box.time_rule(tolerance=1e-6)
-    case = hover_case(hawkmoth, problem.model).rows(np.newaxis, np.float32)
-    strokes = Stroke(**double)
-
-    batch = gym.make_vec("flapenv/Hover-v0", num_envs=ROWS, autoreset_mode="SAME_STEP")
-    batch.reset(seed=0)
+    hawkmoth = load_insect("hawkmoth")
+    points = np.random.default_rng(0).uniform(-1, 1, (ROWS, 6))
+    strokes = Stroke(**StrokeCoordinates(HoverProblem().box).decode(points, hawkmoth.reference)[0])
+    few, error = fast_path(ROWS)
+    many, million = fast_path(MANY)[0], fast_path(MILLION)[0]
     single = gym.make("flapenv/Hover-v0")
-    action = points[0]
+    action = points[0].astype(np.float32)
 
     def beat_single() -> None:
         single.reset()
@@ -74,14 +105,14 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
     return [
         ("baseline: 50 x 500 in NumPy, pasted", baseline, 1),
         ("oracle: blade_element, 50 x 500", lambda: evaluate_by_blade_element(hawkmoth), 1),
-        (f"evaluate, {ROWS} strokes, float64, 1e-9", lambda: evaluate(hawkmoth, strokes), ROWS),
-        (
-            f"fast path, {ROWS} rows, float32, 1e-6",
-            lambda: hover_averages(case, problem.model, **values, rule=rule),
-            ROWS,
-        ),
-        (f"vector env, {ROWS} rows, step with infos", lambda: batch.step(points), ROWS),
-        ("gym.make env, reset and step", beat_single, 1),
+        (f"evaluate, {ROWS:,} strokes, float64, 1e-9", lambda: evaluate(hawkmoth, strokes), ROWS),
+        (f"fast path, {ROWS:,} rows, float32, error {error:.0e}", lambda: few(1), ROWS),
+        (f"fast path, {MANY:,} rows", lambda: many(1), MANY),
+        (f"fast path, {MANY:,} rows, two threads", lambda: many(2), MANY),
+        (f"fast path, {MILLION:,} rows", lambda: million(1), MILLION),
+        (f"Hover-v0, {ROWS:,} rows, step with infos", stepping("flapenv/Hover-v0"), ROWS),
+        (f"Hover-v0, {ROWS:,} rows, step without infos", stepping("flapenv/Hover-v0", infos="none"), ROWS),
+        ("Hover-v0, gym.make, reset and step", beat_single, 1),
     ]
 
 
@@ -103,7 +134,16 @@ def main() -> None:
     print(text_table(rows))
     for name, work, wings in wing_cases():
         print(f"{name}: {wings / rate(work, wings):.2f} s")
+    print(f"import flapenv, after gymnasium: {import_seconds():.3f} s")
+    print(f"largest memory of this process: {resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3:,.0f} MB")
     print(f"{os.cpu_count()} cores, {platform.machine()}, Python {platform.python_version()}, NumPy {np.__version__}")
+
+
+def import_seconds() -> float:
+    """What importing flapenv adds to importing gymnasium, the best of five fresh processes [s]."""
+    code = "import gymnasium, time; t = time.perf_counter(); import flapenv; print(time.perf_counter() - t)"
+    runs = [subprocess.run([sys.executable, "-c", code], capture_output=True, check=True) for _ in range(5)]
+    return min(float(run.stdout) for run in runs)
 
 
 if __name__ == "__main__":

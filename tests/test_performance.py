@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -174,3 +175,27 @@ def test_amplitudes_beyond_90_degrees_are_refused_only_where_k_flap_is_used() ->
     with pytest.raises(ValueError, match=r"flap_amplitude .*k_flap.* = 2 "):
         evaluate(HAWKMOTH, wide)
     assert evaluate(HAWKMOTH, wide, induced=False).weight_support > 1
+
+
+@pytest.mark.parametrize("accounting", ["elastic", "positive"])
+def test_parts_and_threads_change_nothing_and_bound_the_memory(accounting: str, rng: np.random.Generator) -> None:
+    count = 3000 if accounting == "positive" else 70_000
+    stroke = Stroke(frequency=rng.uniform(20, 30, count), flap_amplitude=1.0, pitch_amplitude=0.9, flap_shape=0.5)
+    tracemalloc.start()
+    whole = evaluate("hawkmoth", stroke, accounting=accounting, tolerance=1e-5)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    threaded = evaluate("hawkmoth", stroke, accounting=accounting, tolerance=1e-5, threads=2)
+    np.testing.assert_allclose(threaded.specific_power, whole.specific_power, rtol=1e-12)
+    first = dataclasses.replace(stroke, frequency=stroke.frequency[:5])
+    alone = evaluate("hawkmoth", first, accounting=accounting, tolerance=1e-5)
+    np.testing.assert_allclose(whole.weight_support[:5], alone.weight_support, rtol=1e-12)
+    np.testing.assert_allclose(whole.specific_power[:5], alone.specific_power, rtol=1e-12)
+    assert peak < 1e8
+
+
+def test_a_table_of_strokes_keeps_its_shape_whatever_the_parts() -> None:
+    frequency = np.linspace(20, 30, 3 * 40_000).reshape(3, 40_000)
+    found = evaluate("hawkmoth", Stroke(frequency=frequency, flap_amplitude=1.0, pitch_amplitude=0.9), tolerance=1e-4)
+    assert np.shape(found.specific_power) == frequency.shape
+    assert np.all(np.diff(np.asarray(found.specific_power).reshape(-1)) > 0)

@@ -19,7 +19,7 @@ from flapenv.envs.single import SingleEnv
 from flapenv.insects import Insect
 from flapenv.objective import HoverObjective, Score
 from flapenv.performance import yardstick
-from flapenv.problem import PROBLEMS, HoverProblem, as_problem
+from flapenv.problem import PROBLEMS, HoverProblem, StrokeBox, as_problem
 from flapenv.references import GapTo
 from flapenv.wing_pool import Split
 
@@ -128,8 +128,7 @@ class HoverVectorEnv(BatchEnv):
         if not np.all(weight_support > 0):
             raise ValueError("coefficients lift nothing at an angle of attack of 35°; allowed: a lift to fly on")
         features = [cases.aspect_ratio - 4, (self.flyers.r1_hat - 0.51) / 0.04, np.log(weight_support)]
-        if self.problem.box.flap_amplitude_ratio is not None:
-            features.append((self.problem.box.bounds("flap_amplitude", cases.reference)[1] - AMPLITUDE_0) / AMPLITUDE_1)
+        features += _varying_bounds(self.problem.box, cases.reference)
         self._features = _seen(np.stack(features, axis=-1))
         self._felt_power = felt_power.astype(self.dtype)
         self._reference = StrokeReference(*(np.asarray(own, dtype=self.dtype) for own in cases.reference))
@@ -227,6 +226,18 @@ class HoverVectorEnv(BatchEnv):
         return self.flyers[int(self._beaten[row])], Stroke(**values)
 
 
+def _varying_bounds(box: StrokeBox, reference: StrokeReference) -> list[np.ndarray]:
+    """Bounds that differ from wing to wing in the units of an action; a fixed parameter has one."""
+    seen = []
+    if not box.is_relative("frequency"):  # the same in Hz is another multiple of every wing's own
+        ends = box.bounds("frequency", reference)
+        seen += [np.log(end / reference.frequency) for end in ends[: 1 + box.is_free("frequency")]]
+    if box.is_relative("flap_amplitude"):
+        ends = box.bounds("flap_amplitude", reference)
+        seen += [(end - AMPLITUDE_0) / AMPLITUDE_1 for end in ends[: 1 + box.is_free("flap_amplitude")]]
+    return seen
+
+
 def _seen(values: np.ndarray) -> np.ndarray:
     """Values as an observation shows them."""
     return np.clip(values, -OBSERVATION_LIMIT, OBSERVATION_LIMIT).astype(np.float32, copy=False)
@@ -257,7 +268,8 @@ class HoverEnv(SingleEnv):
     | 0 | AR - 4, aspect ratio of one wing |
     | 1 | (r̂₁ - 0.51)/0.04, centre of area |
     | 2 | log Λ_ref, weight support at the reference frequency, φmax = 60°, constant speed and α = 35° |
-    | - | (φmax - 67.5°)/22.5°, the upper bound of φmax, only where the box takes it from the insect |
+    | - | log(f/f_ref) at both bounds of f, only where the box has them in Hz |
+    | - | (φmax - 67.5°)/22.5° at both bounds of φmax, only where the box takes them from the insect; one if fixed |
     | 3 | last Λ - 1; 0 at the start |
     | 4 | last log(P*/P*_felt), P*_felt from the same yardstick stroke; 0 at the start |
     | 5 | fraction of the episode left |
@@ -266,16 +278,23 @@ class HoverEnv(SingleEnv):
     -P*/P*_ref - λ max(0, 1 - Λ), not below -20. P*_ref is the proven lower bound (the optimum where the
     coefficients leave no proof), so the best return is about -1.045 in the default problem. λ exceeds the multiplier of
     the constrained optimum, so that the reward's optimum is the constrained optimum itself, globally so in the default
-    problem (docs/optimum.md). Terms: `info["reward/power"]`, `info["reward/lift"]`.
+    problem (docs/optimum.md). Terms: `info["reward/power"]`, `info["reward/lift"]`. With `reward="vector"` it is the
+    pair (-P*/P*_ref, -max(0, 1 - Λ)) instead, each not below -20. `info["cost"]` = max(0, 1 - Λ) is the cost that
+    constrained learners ask for.
 
     ## Starting state
-    An insect drawn uniformly, or `options={"insect": name}`.
+    An insect drawn uniformly, or `options={"insect": name}`. `insect="random-wing"` draws from a pool of wings that no
+    single action solves (`flapenv.wing_pool`), with splits for training and test.
 
     ## Episode end
     Terminates after one wingbeat; never truncates. A discount factor has nothing to act on.
 
     ## Arguments
-    `insect`, `problem`, `include_infeasible`, `action_scaling`, `dtype`, `render_mode` as in `HoverVectorEnv`.
+    `insect` and `problem` choose what is flown, `pool_...`, `leave_out` and `gap_to` belong to "random-wing",
+    `action_scaling`, `reward`, `infos`, `dtype` and `threads` how it is put. `HoverVectorEnv` and the documentation
+    list all with their defaults. Infos, the same keys on every step: `insect`, `weight_support`, `specific_power`
+    [W/kg], `lift_deficit`, `cost`, the reward's terms, `stroke/...` [SI], `clipped`, `bound_gap` and
+    `optimality_gap`, None where there is none.
 
     ## Version history
     - v0: first version.

@@ -168,3 +168,14 @@ def test_a_problem_of_ones_own_takes_random_wings_too() -> None:
     env = HoverVectorEnv(4, insect="random-wing", pool_size=16, problem=HoverProblem(box={"pitch_shape": (0.1, 3.0)}))
     env.reset(seed=0)
     assert np.isfinite(env.step(env.action_space.sample())[1]).all()
+
+
+def test_bounds_that_differ_from_wing_to_wing_are_seen() -> None:
+    hertz = HoverVectorEnv(2, insect=["hawkmoth", "bumblebee"], problem=HoverProblem(box={"frequency": (20, 200)}))
+    seen = hertz.reset(seed=0, options={"insect": ["hawkmoth", "bumblebee"]})[0]
+    assert seen.shape == (2, 8)
+    own = np.array([26.3, 155.0])
+    np.testing.assert_allclose(seen[:, 3:5], np.log([20, 200] / own[:, None]), rtol=1e-5)
+    both = HoverVectorEnv(1, insect="hawkmoth", problem=HoverProblem(box={"flap_amplitude_ratio": (0.9, 1.1)}))
+    own = load_insect("hawkmoth").stroke.flap_amplitude * np.array([0.9, 1.1])
+    np.testing.assert_allclose(both.reset()[0][0, 3:5], (np.degrees(own) - 67.5) / 22.5, rtol=1e-5)
