@@ -18,6 +18,7 @@ import gymnasium as gym
 import numpy as np
 
 from flapenv import HoverProblem, Stroke, Wing, evaluate, load_insect
+from flapenv.aero.accelerators import Accelerator, plate_kernel
 from flapenv.aero.induced import k_ind
 from flapenv.aero.parameters import StrokeReference
 from flapenv.case import hover_case
@@ -57,7 +58,7 @@ def rate(work: Callable[[], object], wingbeats: int) -> float:
     return best
 
 
-def fast_path(rows: int) -> tuple[Callable[[int], Any], float]:
+def fast_path(rows: int, accelerator: Accelerator = "numpy") -> tuple[Callable[[int], Any], float]:
     """The averages of random strokes of the default box in single precision, as a function of the threads.
 
     Returns:
@@ -70,8 +71,10 @@ def fast_path(rows: int) -> tuple[Callable[[int], Any], float]:
     case = hover_case(hawkmoth, problem.model)
     single, rule = case.rows(np.newaxis, np.float32), problem.box.time_rule(tolerance=QUADRATURE_TOLERANCE)
 
+    kernel = plate_kernel(accelerator)
+
     def work(threads: int) -> Any:
-        return hover_averages(single, problem.model, **values, rule=rule, threads=threads)
+        return hover_averages(single, problem.model, **values, rule=rule, threads=threads, kernel=kernel)
 
     some: dict[str, Any] = {name: value[:ROWS].astype(float) for name, value in values.items()}
     exact = hover_averages(case, problem.model, **some, rule=rule.refined(4))
@@ -94,6 +97,7 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
     points = np.random.default_rng(0).uniform(-1, 1, (ROWS, 6))
     strokes = Stroke(**StrokeCoordinates(HoverProblem().box).decode(points, hawkmoth.reference)[0])
     few, error = fast_path(ROWS)
+    compiled, own_error = fast_path(ROWS, "numba")
     many, million = fast_path(MANY)[0], fast_path(MILLION)[0]
     single = gym.make("flapenv/Hover-v0")
     action = points[0].astype(np.float32)
@@ -110,8 +114,10 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
         (f"fast path, {MANY:,} rows", lambda: many(1), MANY),
         (f"fast path, {MANY:,} rows, two threads", lambda: many(2), MANY),
         (f"fast path, {MILLION:,} rows", lambda: million(1), MILLION),
+        (f"fast path, {ROWS:,} rows, numba, error {own_error:.0e}", lambda: compiled(1), ROWS),
         (f"Hover-v0, {ROWS:,} rows, step with infos", stepping("flapenv/Hover-v0"), ROWS),
         (f"Hover-v0, {ROWS:,} rows, step without infos", stepping("flapenv/Hover-v0", infos="none"), ROWS),
+        (f"Hover-v0, {ROWS:,} rows, numba", stepping("flapenv/Hover-v0", accelerator="numba"), ROWS),
         ("Hover-v0, gym.make, reset and step", beat_single, 1),
     ]
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from flapenv.aero.accelerators import Accelerator, plate_kernel
 from flapenv.aero.checks import record
 from flapenv.case import HoverCase
 from flapenv.insects import Insect
@@ -69,6 +70,7 @@ class HoverObjective:
         *,
         gap_to: GapTo = "optimum",
         threads: int = 1,
+        accelerator: Accelerator = "numpy",
     ) -> None:
         """Solve the references of every insect.
 
@@ -78,11 +80,16 @@ class HoverObjective:
             dtype: of the arrays that `score` computes with.
             gap_to: as `Flyers` takes it.
             threads: how many work at once on large batches.
+            accelerator: what computes the averages, one of `flapenv.aero.accelerators.ACCELERATORS`.
 
         Raises:
-            ValueError: as `Flyers` raises it.
+            ValueError: as `Flyers` raises it, and for an accelerator that the type or the model has no use for.
+            ImportError: where the accelerator is not installed.
         """
         self.problem, self.dtype, self.threads = problem, np.dtype(dtype), threads
+        self.kernel = plate_kernel(accelerator)
+        if accelerator != "numpy":
+            self._require_use(accelerator)
         self.flyers = Flyers(insects, problem, gap_to=gap_to)
         self.rule = problem.box.time_rule(tolerance=QUADRATURE_TOLERANCE)
 
@@ -103,6 +110,17 @@ class HoverObjective:
         self._has_gap = feasible & np.isfinite(references.best_power)
         self._cases = self.cases.spread((len(self.flyers),)).rows(slice(None), self.dtype)
         self._warn_of_a_flat_reward(np.where(feasible, best_power, 0) / bound)
+
+    def _require_use(self, accelerator: str) -> None:
+        """Refuse an accelerator that would change the precision or nothing at all."""
+        if self.dtype.itemsize > 4:
+            raise ValueError(f"accelerator = {accelerator!r} computes in single precision; allowed: dtype 'float32'")
+        model = self.problem.model
+        if not model.is_plate or model.profile_drag or model.accounting == "positive":
+            raise ValueError(
+                f"accelerator = {accelerator!r} knows 'lifting-line' and 'extended-lifting-line' coefficients "
+                f"without profile drag and with elastic power; allowed for problem {self.problem.name!r}: 'numpy'"
+            )
 
     @property
     def cases(self) -> HoverCase:

@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero import induced
+from flapenv.aero.accelerators import PlateKernel
 from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result, is_tensor
 from flapenv.aero.checks import record, require_count
 from flapenv.aero.paid_power import positive_power
+from flapenv.aero.plate_averages import plate_averages
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.threads import in_threads
 from flapenv.aero.wingbeat import TimeRule, force_averages, time_rule
@@ -56,6 +58,7 @@ def hover_averages(
     pitch_phase: Real,
     rule: TimeRule,
     threads: int = 1,
+    kernel: PlateKernel = plate_averages,
 ) -> tuple[Real, Real]:
     """Λ [-] and P* [W/kg] of strokes that are known to be valid: the one path behind every other evaluation.
 
@@ -72,6 +75,7 @@ def hover_averages(
         pitch_phase: δ [rad].
         rule: of the time quadrature, from `time_rule`.
         threads: how many work at once; tensors know their own.
+        kernel: what computes the averages of the paper's force law, from `flapenv.aero.accelerators.plate_kernel`.
 
     Returns:
         Weight support and specific power, of the broadcast shape.
@@ -85,26 +89,28 @@ def hover_averages(
         "pitch_phase": pitch_phase,
     }
     if any(is_tensor(value) for value in (*stroke.values(), *vars(case).values())):
-        return _averages(case, model, stroke, rule)
+        return _averages(case, model, stroke, rule, kernel)
     shape = np.broadcast_shapes(*(np.shape(value) for value in stroke.values()), np.shape(case.lift_scale))
     count, largest = math.prod(shape), PAID_PART if model.accounting == "positive" else PART
     parts = max(math.ceil(count / largest), min(threads, count // LEAST_PART))
     if parts <= 1:
-        return _averages(case, model, stroke, rule)
+        return _averages(case, model, stroke, rule, kernel)
     rows = {name: np.broadcast_to(value, shape).reshape(-1) for name, value in stroke.items()}
     every = case.spread(shape)
     results = np.empty((2, count), np.result_type(*rows.values(), case.lift_scale))
 
     def work(part: slice) -> None:
         own = {name: value[part] for name, value in rows.items()}
-        results[:, part] = _averages(every.rows(part, None), model, own, rule)
+        results[:, part] = _averages(every.rows(part, None), model, own, rule, kernel)
 
     edges = np.linspace(0, count, parts + 1).astype(int)
     in_threads(work, [slice(start, stop) for start, stop in itertools.pairwise(edges)], threads)
     return results[0].reshape(shape), results[1].reshape(shape)
 
 
-def _averages(case: HoverCase, model: HoverModel, stroke: dict[str, Real], rule: TimeRule) -> tuple[Real, Real]:
+def _averages(
+    case: HoverCase, model: HoverModel, stroke: dict[str, Real], rule: TimeRule, kernel: PlateKernel
+) -> tuple[Real, Real]:
     """Λ and P* of strokes, all at once."""
     _, frequency, flap_amplitude, lift_scale, power_scale = as_arrays(
         stroke["frequency"], stroke["flap_amplitude"], case.lift_scale, case.power_scale
@@ -112,7 +118,7 @@ def _averages(case: HoverCase, model: HoverModel, stroke: dict[str, Real], rule:
     speed = 4 * frequency * flap_amplitude
     law = force_law(case, model, speed, flap_amplitude)
     waveform = {name: stroke[name] for name in ("flap_shape", "pitch_amplitude", "pitch_shape", "pitch_phase")}
-    scale, lift_average, power_average = force_averages(law, **waveform, rule=rule)
+    scale, lift_average, power_average = force_averages(law, **waveform, rule=rule, kernel=kernel)
     _, speed, lift_scale, power_scale, scale, lift_average, power_average = as_arrays(
         speed, lift_scale, power_scale, scale, lift_average, power_average
     )

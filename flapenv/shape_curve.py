@@ -39,7 +39,7 @@ class Shapes:
         own = {name: getattr(box, name) for name in SHAPES}
         self.coordinates = StrokeCoordinates(StrokeBox(**fixed, **own), scaling="log")
 
-    def values(self, points: np.ndarray) -> dict[str, np.ndarray]:
+    def values(self, points: np.ndarray) -> dict[str, Any]:
         """Fields of the waveforms at points of the cube (..., n)."""
         decoded, _ = self.coordinates.decode(points, StrokeReference(1.0, 1.0))
         return {name: decoded[name] for name in SHAPES}

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from flapenv.aero.accelerators import PlateKernel
 from flapenv.aero.arrays import Real, as_arrays, as_like, as_numpy, is_tensor
 from flapenv.aero.checks import require_scalar
 from flapenv.aero.force_laws import ForceLaw, PlateLaw
@@ -87,6 +88,7 @@ def speed_averages(
     *,
     rule: TimeRule,
     law: ForceLaw | None = None,
+    kernel: PlateKernel = plate_averages,
 ) -> tuple[Real, Real]:
     """⟨φ̇|φ̇| sin 2θ⟩/v̄² and ⟨|φ̇|³ cos² θ⟩/v̄³ with v̄ = ⟨|φ̇|⟩ = 4 f φmax: lift and power of the waveform alone.
 
@@ -100,6 +102,7 @@ def speed_averages(
         pitch_phase: δ [rad].
         rule: of a piece of the half-stroke, from `time_rule`.
         law: force law whose constants broadcast with the rest, or None for sin 2α and sin² α.
+        kernel: what computes without a law, for arrays; see `flapenv.aero.accelerators`.
 
     Returns:
         The lift and the power average [-], shape (...).
@@ -112,7 +115,7 @@ def speed_averages(
     fractions, weights = as_like(rows[3], *rule.points)
     count = rows[0].shape[0]
     if law is None and not is_tensor(rows[0]):
-        lift, power = plate_averages(*rows, fractions=fractions, weights=weights)
+        lift, power = kernel(*rows, fractions=fractions, weights=weights)
         return lift.reshape(shape), power.reshape(shape)
     block = count if is_tensor(rows[0]) else max(1, BLOCK_BYTES // (2 * rule.nodes * rows[0].itemsize))
     lifts, powers = [], []
@@ -167,6 +170,7 @@ def force_averages(
     pitch_shape: Real,
     pitch_phase: Real,
     rule: TimeRule,
+    kernel: PlateKernel = plate_averages,
 ) -> tuple[Real, Real, Real]:
     """A scale, and ⟨v² C_L⟩/v̄² and ⟨v³ C_D⟩/(2 v̄³) over it, of any force law.
 
@@ -179,12 +183,13 @@ def force_averages(
         pitch_shape: Cθ [-].
         pitch_phase: δ [rad].
         rule: of a piece of the half-stroke, from `time_rule`.
+        kernel: as in `speed_averages`.
 
     Returns:
         The scale, the lift and the power average [-], shape (...).
     """
     if isinstance(law, PlateLaw) and law.profile_drag == 0:
-        averages = speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, rule=rule)
+        averages = speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, rule=rule, kernel=kernel)
         return law.constant, *averages
     lift, power = speed_averages(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, rule=rule, law=law)
     return 1.0, lift, power / 2

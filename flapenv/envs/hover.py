@@ -8,6 +8,7 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
+from flapenv.aero.accelerators import Accelerator
 from flapenv.aero.checks import require_count, require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.aero.stroke import Stroke
@@ -73,6 +74,7 @@ class HoverVectorEnv(BatchEnv):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         dtype: Any = "float32",
         threads: int = 1,
+        accelerator: Accelerator = "numpy",
         render_mode: str | None = None,
         **unknown: Any,
     ) -> None:
@@ -95,12 +97,14 @@ class HoverVectorEnv(BatchEnv):
             autoreset_mode: an `AutoresetMode` or its name.
             dtype: "float32" or "float64", of the computation; observations and actions are float32 always.
             threads: how many work at once; worth it from some 16,384 rows on.
+            accelerator: "numpy", or "numba" (the extra "fast"), the same compiled, for forces normal to the chord.
             render_mode: "rgb_array" or None.
             **unknown: refused, with the names that exist.
 
         Raises:
             TypeError: for an unknown argument or one of another kind.
             ValueError: for an unknown name or a value outside its range.
+            ImportError: where the accelerator is not installed.
         """
         refuse_unknown(unknown, type(self))
         require_flag("include_infeasible", include_infeasible)
@@ -120,7 +124,9 @@ class HoverVectorEnv(BatchEnv):
         else:
             refuse_unused(own, type(self), f"insect = {RANDOM_WING!r}")
             insects = choose_insects(insect, self.problem, include_infeasible=include_infeasible)
-        self.objective = HoverObjective(insects, self.problem, self.dtype, gap_to=gap_to, threads=threads)
+        self.objective = HoverObjective(
+            insects, self.problem, self.dtype, gap_to=gap_to, threads=threads, accelerator=accelerator
+        )
         self.flyers = self.objective.flyers
 
         cases = self.objective.cases
@@ -291,9 +297,9 @@ class HoverEnv(SingleEnv):
 
     ## Arguments
     `insect` and `problem` choose what is flown, `pool_...`, `leave_out` and `gap_to` belong to "random-wing",
-    `action_scaling`, `reward`, `infos`, `dtype` and `threads` how it is put. `HoverVectorEnv` and the documentation
-    list all with their defaults. Infos, the same keys on every step: `insect`, `weight_support`, `specific_power`
-    [W/kg], `lift_deficit`, `cost`, the reward's terms, `stroke/...` [SI], `clipped`, `bound_gap` and
+    `action_scaling`, `reward`, `infos`, `dtype`, `threads` and `accelerator` how it is put. `HoverVectorEnv` and the
+    documentation list all with their defaults. Infos, the same keys on every step: `insect`, `weight_support`,
+    `specific_power` [W/kg], `lift_deficit`, `cost`, the reward's terms, `stroke/...` [SI], `clipped`, `bound_gap` and
     `optimality_gap`, None where there is none.
 
     ## Version history
