@@ -39,13 +39,13 @@ class StrokeCoordinates:
         self.names = box.free
         self._uses_tip_speed = scaling == "tip-speed" and {"frequency", "flap_amplitude"} <= set(self.names)
         units = StrokeReference(1.0, 1.0)  # relative bounds are multiples of the own stroke until the end
-        self._axes: dict[str, _Axis] = {}
+        self.axes: dict[str, Axis] = {}
         for name, row in STROKE_PARAMETERS.items():
             scale, floor = ("linear", 0.0) if scaling == "plain" else (row.scale, row.log_floor)
-            self._axes[name] = _Axis(*box.bounds(name, units), scale, floor)
+            self.axes[name] = Axis(*box.bounds(name, units), scale, floor)
         if self._uses_tip_speed:
-            frequency, amplitude = self._axes["frequency"], self._axes["flap_amplitude"]
-            self._axes["frequency"] = _Axis(frequency.low * amplitude.low, frequency.high * amplitude.high, "log", 0.0)
+            frequency, amplitude = self.axes["frequency"], self.axes["flap_amplitude"]
+            self.axes["frequency"] = Axis(frequency.low * amplitude.low, frequency.high * amplitude.high, "log", 0.0)
         self._bounds: dict[np.dtype, dict[str, Interval]] = {}
 
     def __len__(self) -> int:
@@ -72,13 +72,13 @@ class StrokeCoordinates:
         inside = xp.clip(points, -1, 1)
         clipped = xp.any(inside != points, axis=-1)
         dtype = as_numpy_type(points)
-        bounds = self._bounds.get(dtype) or self._bounds.setdefault(dtype, self._inside(dtype))
+        bounds = self.bounds(dtype)
         values: dict[str, Any] = {}
         for name, (low, high) in bounds.items():
             if name not in self.names:
                 values[name] = xp.full_like(inside[..., 0], low)
                 continue
-            value = self._axes[name].value((inside[..., self.names.index(name)] + 1) / 2, xp)
+            value = self.axes[name].value((inside[..., self.names.index(name)] + 1) / 2, xp)
             values[name] = value if name == "frequency" and self._uses_tip_speed else xp.clip(value, low, high)
         if self._uses_tip_speed:
             frequency = values["frequency"] / values["flap_amplitude"]
@@ -90,9 +90,18 @@ class StrokeCoordinates:
                 values[name] = values[name] * as_like(points, np.asarray(getattr(reference, name)))[0]
         return values, clipped
 
-    def _inside(self, dtype: np.dtype) -> dict[str, Interval]:
-        """Bounds that no stroke leaves in the type of the computation: 90° must not become a little more."""
-        inside = {}
+    def bounds(self, dtype: np.dtype) -> dict[str, Interval]:
+        """Bounds that no stroke leaves in the type of the computation: 90° must not become a little more.
+
+        Args:
+            dtype: of the computation.
+
+        Returns:
+            Lower and upper bound by name; of relative parameters, as multiples of the own stroke.
+        """
+        if dtype in self._bounds:
+            return self._bounds[dtype]
+        inside = self._bounds[dtype] = {}
         for name in STROKE_PARAMETERS:
             low, high = self.box.bounds(name, StrokeReference(1.0, 1.0))
             ends = dtype.type(low), dtype.type(high)
@@ -120,19 +129,27 @@ class StrokeCoordinates:
         }
         if self._uses_tip_speed:
             units["frequency"] = units["frequency"] * units["flap_amplitude"]
-        axes = [np.clip(2 * self._axes[name].fraction(units[name]) - 1, -1, 1) for name in self.names]
+        axes = [np.clip(2 * self.axes[name].fraction(units[name]) - 1, -1, 1) for name in self.names]
         return np.stack(np.broadcast_arrays(*axes), axis=-1) if axes else np.zeros((0,))
 
 
-class _Axis:
-    """How a parameter runs from one bound to the other."""
+class Axis:
+    """How a parameter runs from one bound to the other: start + span x for x from 0 to 1, or the exponential of that.
+
+    Attributes:
+        scale: "linear", "log" or "log-complement".
+        start: where it begins, in the units of its scale.
+        span: how far it goes.
+        shift: what keeps a logarithm off its pole.
+    """
 
     def __init__(self, low: float, high: float, scale: str, floor: float) -> None:
-        """Bounds, "linear", "log" or "log-complement", and how near a logarithm may come to its pole."""
+        """Bounds, the scale, and how near a logarithm may come to its pole."""
         self.low, self.high, self.scale = low, high, scale
         first, last = (1 - low, 1 - high) if scale == "log-complement" else (low, high)
         # nothing is shifted unless an end lies nearer to the pole than the floor
         self.shift = floor if min(first, last) < floor else 0.0
+        self.start, self.span = low, high - low
         if scale != "linear" and low < high:
             self.start = math.log(first + self.shift)
             self.span = math.log(last + self.shift) - self.start
@@ -140,13 +157,13 @@ class _Axis:
     def value(self, fraction: Any, xp: Any) -> Any:
         """The value a fraction of the way; arrays or tensors of the library `xp`."""
         if self.scale == "linear":
-            return self.low + (self.high - self.low) * fraction
+            return self.start + self.span * fraction
         run = xp.exp(self.start + self.span * fraction) - self.shift
         return 1 - run if self.scale == "log-complement" else run
 
     def fraction(self, value: np.ndarray) -> np.ndarray:
         """The inverse of `value`."""
         if self.scale == "linear":
-            return (value - self.low) / (self.high - self.low)
+            return (value - self.start) / self.span
         run = 1 - value if self.scale == "log-complement" else value
         return (np.log(run + self.shift) - self.start) / self.span

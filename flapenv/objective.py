@@ -106,8 +106,8 @@ class HoverObjective:
             "bound_charge": np.maximum(LEAST_GAP_WEIGHT, 2 * charge / bound),
             "charge": self.gap_charge,
         }
-        self._reference = {name: value.astype(self.dtype) for name, value in reference.items()}
-        self._has_gap = feasible & np.isfinite(references.best_power)
+        self.reference = {name: value.astype(self.dtype) for name, value in reference.items()}
+        self.has_gap = feasible & np.isfinite(references.best_power)
         self._cases = self.cases.spread((len(self.flyers),)).rows(slice(None), self.dtype)
         self._warn_of_a_flat_reward(np.where(feasible, best_power, 0) / bound)
 
@@ -165,9 +165,10 @@ class HoverObjective:
         Returns:
             Arrays of shape (n,).
         """
-        weight_support, specific_power = hover_averages(self.rows(index), self.problem.model, **strokes, rule=self.rule)
-        reference = {name: value[index] for name, value in self._reference.items()}
-        has_gap = self._has_gap[index]
+        options: dict[str, Any] = {"rule": self.rule, "threads": self.threads, "kernel": self.kernel}
+        weight_support, specific_power = hover_averages(self.rows(index), self.problem.model, **strokes, **options)
+        reference = {name: value[index] for name, value in self.reference.items()}
+        has_gap = self.has_gap[index]
         deficit = np.maximum(0, 1 - weight_support)
         power_term = -specific_power / reference["bound"]
         lift_term = -reference["penalty"] * deficit

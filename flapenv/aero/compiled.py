@@ -43,6 +43,31 @@ sine: Any = numba.njit(inline="always", **OPTIONS)(_sine)
 hyperbolic_tangent: Any = numba.njit(inline="always", **OPTIONS)(_hyperbolic_tangent)
 
 
+def _piece(own: Any, fractions: Any, weights: Any, sines: Any) -> None:
+    """Both integrands over one piece of a half-stroke of `LANES` strokes: rows 4 and 5 of `own` from rows 0 to 3."""
+    nodes = len(fractions)
+    rest, shape, scale, span, lift, power = own[0], own[1], own[2], own[3], own[4], own[5]
+    for k in range(nodes):
+        place, at = fractions[k], sines[k]
+        for i in range(LANES):
+            angle = span[i] * place
+            at[i] = sine(min(angle, PI - angle))  # cos ωt, and read backwards sin(ωt + δ)
+    for i in range(LANES):
+        lift[i] = np.float32(0)
+        power[i] = np.float32(0)
+    for k in range(nodes):
+        weight, ahead, behind = weights[k], sines[k], sines[nodes - 1 - k]
+        for i in range(LANES):
+            speed = ahead[i] / math.sqrt(rest[i] + ahead[i] * ahead[i])  # φ̇ of (2.1), but for a factor
+            pitch = scale[i] * hyperbolic_tangent(shape[i] * behind[i])  # (2.2)
+            normal = speed * sine(RIGHT_ANGLE - pitch)  # |φ̇| sin α
+            lift[i] += weight * (normal * speed * sine(pitch))
+            power[i] += weight * (normal * normal * speed)
+
+
+piece: Any = numba.njit(inline="always", **OPTIONS)(_piece)
+
+
 def _half_beats(
     length: Any,
     roundness: Any,
@@ -54,36 +79,20 @@ def _half_beats(
     power: Any,
 ) -> None:
     """Both integrands over both pieces of a half-stroke, of strokes in groups of `LANES`."""
-    nodes, rows = len(fractions), len(roundness)
-    sines = np.empty((nodes, LANES), np.float32)
+    rows = len(roundness)
+    sines = np.empty((len(fractions), LANES), np.float32)
     own = np.ones((6, LANES), np.float32)  # what the strokes of a group need, side by side
-    rest, shape, scale, span, lift_sum, power_sum = own[0], own[1], own[2], own[3], own[4], own[5]
     for start in range(0, rows, LANES):
         count = min(LANES, rows - start)
         for i in range(count):
-            rest[i], shape[i], scale[i] = roundness[start + i], pitch_shape[start + i], pitch_scale[start + i]
-        for piece in range(2):
+            own[0, i], own[1, i], own[2, i] = roundness[start + i], pitch_shape[start + i], pitch_scale[start + i]
+        for half in range(2):
             for i in range(count):
-                span[i] = length[piece, start + i]
-            for k in range(nodes):
-                place, at = fractions[k], sines[k]
-                for i in range(LANES):
-                    angle = span[i] * place
-                    at[i] = sine(min(angle, PI - angle))  # cos ωt, and read backwards sin(ωt + δ)
-            for i in range(LANES):
-                lift_sum[i] = np.float32(0)
-                power_sum[i] = np.float32(0)
-            for k in range(nodes):
-                weight, ahead, behind = weights[k], sines[k], sines[nodes - 1 - k]
-                for i in range(LANES):
-                    speed = ahead[i] / math.sqrt(rest[i] + ahead[i] * ahead[i])  # φ̇ of (2.1), but for a factor
-                    pitch = scale[i] * hyperbolic_tangent(shape[i] * behind[i])  # (2.2)
-                    normal = speed * sine(RIGHT_ANGLE - pitch)  # |φ̇| sin α
-                    lift_sum[i] += weight * (normal * speed * sine(pitch))
-                    power_sum[i] += weight * (normal * normal * speed)
+                own[3, i] = length[half, start + i]
+            piece(own, fractions, weights, sines)
             for i in range(count):
-                lift[piece, start + i] = lift_sum[i]
-                power[piece, start + i] = power_sum[i]
+                lift[half, start + i] = own[4, i]
+                power[half, start + i] = own[5, i]
 
 
 half_beats: Any = numba.njit(**OPTIONS)(_half_beats)

@@ -1,252 +1,17 @@
-"""flapenv/Hover-v0: one step is one wingbeat; hover with the least power. Native vector env, and its batch of one."""
+"""flapenv/Hover-v0: one step is one wingbeat; hover with the least power."""
 
 import math
-from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from gymnasium import spaces
-from gymnasium.vector import AutoresetMode
 
-from flapenv.aero.accelerators import Accelerator
-from flapenv.aero.checks import require_count, require_flag, require_name
-from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
-from flapenv.aero.stroke import Stroke
-from flapenv.coordinates import Scaling, StrokeCoordinates
-from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown, refuse_unused
+from flapenv.coordinates import StrokeCoordinates
+from flapenv.envs.batch import Info, checked_actions
 from flapenv.envs.describe import action_table, described, stroke_rows
-from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool
+from flapenv.envs.hover_batch import HoverVectorEnv
+from flapenv.envs.hover_of_one import HoverOfOne, serves
 from flapenv.envs.single import SingleEnv
-from flapenv.insects import Insect
-from flapenv.objective import HoverObjective, Score
-from flapenv.performance import yardstick
-from flapenv.problem import PROBLEMS, HoverProblem, StrokeBox, as_problem
-from flapenv.references import GapTo
-from flapenv.wing_pool import Split
-
-ProblemChoice = str | HoverProblem | Mapping[str, Any]
-OBSERVATION_LIMIT = 5.0
-AMPLITUDE_0, AMPLITUDE_1 = math.radians(67.5), math.radians(22.5)
-"""Middle and half-range of the observed bound of φmax [rad]."""
-NOT_YET = -1
-RewardKind = Literal["scalar", "vector"]
-REWARD_KINDS: tuple[RewardKind, ...] = ("scalar", "vector")
-DEFAULT_PROBLEM = next(iter(PROBLEMS))
-
-
-class HoverVectorEnv(BatchEnv):
-    """Batched `HoverEnv`, which describes actions, observations and rewards: one step is one wingbeat in every row.
-
-    Rows are independent but for the one generator that draws their insects, in row order, whatever the others do.
-    Batches of different sizes agree to rounding.
-    """
-
-    reset_options = ("insect",)
-    info_keys = (
-        "insect",
-        "weight_support",
-        "specific_power",
-        "lift_deficit",
-        "cost",
-        "reward/power",
-        "reward/lift",
-        *(f"stroke/{name}" for name in STROKE_PARAMETERS),
-        "clipped",
-        "bound_gap",
-        "optimality_gap",
-    )
-
-    def __init__(
-        self,
-        num_envs: int = 1,
-        *,
-        insect: InsectChoice = "all",
-        problem: ProblemChoice = DEFAULT_PROBLEM,
-        include_infeasible: bool = False,
-        pool_size: int = 4096,
-        pool_seed: int = 0,
-        pool_split: Split = "train",
-        leave_out: Insect | str | None = None,
-        gap_to: GapTo = "bound",
-        action_scaling: Scaling = "tip-speed",
-        reward: RewardKind = "scalar",
-        infos: InfoChoice = "all",
-        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
-        dtype: Any = "float32",
-        threads: int = 1,
-        accelerator: Accelerator = "numpy",
-        render_mode: str | None = None,
-        **unknown: Any,
-    ) -> None:
-        """Solve the references of all insects (once per process) and set up the spaces.
-
-        Args:
-            num_envs: rows.
-            insect: "all", a name, an `Insect`, the dict of one, or a list of these; or "random-wing", a pool of wings.
-                Drawn uniformly at each reset.
-            problem: a name of `PROBLEMS`, a `HoverProblem` or the dict of one.
-            include_infeasible: whether "all" keeps insects that no stroke of the box lifts.
-            pool_size: of "random-wing", the number of wings.
-            pool_seed: of "random-wing", which pool.
-            pool_split: of "random-wing": "train", "test" or "outside", see `flapenv.wing_pool.wing_pool`.
-            leave_out: of "random-wing", an insect whose like is left out.
-            gap_to: of "random-wing": "optimum" solves every wing of the pool, for `info["optimality_gap"]`.
-            action_scaling: how actions run over the box; see `StrokeCoordinates`.
-            reward: "scalar", or "vector" for (power, deficit), shape (num_envs, 2).
-            infos: "all", "none", or the keys wanted.
-            autoreset_mode: an `AutoresetMode` or its name.
-            dtype: "float32" or "float64", of the computation; observations and actions are float32 always.
-            threads: how many work at once; worth it from some 16,384 rows on.
-            accelerator: "numpy", or "numba" (the extra "fast"), the same compiled, for forces normal to the chord.
-            render_mode: "rgb_array" or None.
-            **unknown: refused, with the names that exist.
-
-        Raises:
-            TypeError: for an unknown argument or one of another kind.
-            ValueError: for an unknown name or a value outside its range.
-            ImportError: where the accelerator is not installed.
-        """
-        refuse_unknown(unknown, type(self))
-        require_flag("include_infeasible", include_infeasible)
-        require_count("threads", threads)
-        require_name("reward", reward, REWARD_KINDS)
-        self.problem = as_problem(problem)
-        self.dtype = np.dtype(require_name("dtype", getattr(dtype, "__name__", str(dtype)), ("float32", "float64")))
-        self.coordinates = StrokeCoordinates(self.problem.box, scaling=action_scaling)
-        if not len(self.coordinates):
-            raise ValueError("box fixes every parameter; allowed: at least one with lower < upper")
-        own: dict[str, Any] = {"pool_size": pool_size, "pool_seed": pool_seed, "pool_split": pool_split}
-        own |= {"leave_out": leave_out, "gap_to": gap_to}
-        if isinstance(insect, str) and insect == RANDOM_WING:
-            insects: Any = choose_pool(
-                self.problem, size=pool_size, seed=pool_seed, split=pool_split, leave_out=leave_out
-            )
-        else:
-            refuse_unused(own, type(self), f"insect = {RANDOM_WING!r}")
-            insects = choose_insects(insect, self.problem, include_infeasible=include_infeasible)
-        self.objective = HoverObjective(
-            insects, self.problem, self.dtype, gap_to=gap_to, threads=threads, accelerator=accelerator
-        )
-        self.flyers = self.objective.flyers
-
-        cases = self.objective.cases
-        weight_support, felt_power = yardstick(cases, self.problem.model)
-        if not np.all(weight_support > 0):
-            raise ValueError("coefficients lift nothing at an angle of attack of 35°; allowed: a lift to fly on")
-        features = [cases.aspect_ratio - 4, (self.flyers.r1_hat - 0.51) / 0.04, np.log(weight_support)]
-        features += _varying_bounds(self.problem.box, cases.reference)
-        self._features = _seen(np.stack(features, axis=-1))
-        self._felt_power = felt_power.astype(self.dtype)
-        self._reference = StrokeReference(*(np.asarray(own, dtype=self.dtype) for own in cases.reference))
-
-        super().__init__(
-            num_envs,
-            single_observation_space=spaces.Box(
-                -OBSERVATION_LIMIT, OBSERVATION_LIMIT, (len(features) + 3,), np.float32
-            ),
-            single_action_space=spaces.Box(-1.0, 1.0, (len(self.coordinates),), np.float32),
-            autoreset_mode=autoreset_mode,
-            render_mode=render_mode,
-            infos=infos,
-            reward_space=spaces.Box(self.problem.reward_floor, 0.0, (2,), np.float64) if reward == "vector" else None,
-        )
-        self._insect = np.zeros(num_envs, dtype=np.intp)
-        self._felt = np.zeros((num_envs, 3), dtype=np.float32)  # last Λ - 1, last log P*/P*_felt, fraction left
-        self._stroke = {name: np.zeros(num_envs, dtype=self.dtype) for name in STROKE_PARAMETERS}
-        self._beaten = np.full(num_envs, NOT_YET, dtype=np.intp)  # the insect of each row's last wingbeat
-
-    def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
-        drawn = self.np_random.integers(len(self.flyers), size=self.num_envs)
-        chosen = options.get("insect")
-        if chosen is not None:
-            drawn = self._chosen(chosen)
-        self._insect = np.where(mask, drawn, self._insect)
-        self._felt[mask] = (0.0, 0.0, 1.0)
-        return {"insect": self.flyers.names[self._insect]}
-
-    def _chosen(self, chosen: Any) -> np.ndarray:
-        """Row numbers of insects asked for by name, one for all rows or one for each."""
-        if not isinstance(chosen, str | list | tuple | np.ndarray):
-            raise TypeError(f"reset option insect = {chosen!r} is not allowed; allowed: a name, or one for each row")
-        names = [chosen] * self.num_envs if isinstance(chosen, str) else list(chosen)
-        if len(names) != self.num_envs:
-            raise ValueError(f"reset option insect has {len(names)} names; allowed: one, or one for each row")
-        number = {name: i for i, name in enumerate(self.flyers.names)}
-        return np.array([number[require_name("reset option insect", name, number)] for name in names], dtype=np.intp)
-
-    def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
-        reference = StrokeReference(*(own[self._insect] for own in self._reference))
-        strokes, clipped = self.coordinates.decode(actions.astype(self.dtype, copy=False), reference)
-        score = self.objective.score(self._insect, strokes)
-        felt = score.weight_support - 1, np.log(score.specific_power / self._felt_power[self._insect])
-        rows = slice(None) if mask.all() else mask
-        for column, value in enumerate(felt):
-            self._felt[rows, column] = _seen(value)[rows]
-        self._felt[rows, -1] = 0.0
-        for name, value in strokes.items():
-            self._stroke[name] = value if mask.all() else np.where(mask, value, self._stroke[name])
-        self._beaten = np.where(mask, self._insect, self._beaten)
-        reward = score.reward
-        if self.reward_space is not None:
-            reward = np.maximum(np.stack([score.power_term, -score.lift_deficit], axis=-1), self.problem.reward_floor)
-        return reward, mask.copy(), np.zeros(self.num_envs, dtype=bool), self._info(score, strokes, clipped)
-
-    def _info(self, score: Score, strokes: dict[str, np.ndarray], clipped: np.ndarray) -> Info:
-        return {
-            "insect": self.flyers.names[self._insect],
-            "weight_support": score.weight_support,
-            "specific_power": score.specific_power,
-            "lift_deficit": score.lift_deficit,
-            "cost": score.lift_deficit.copy(),
-            "reward/power": score.power_term,
-            "reward/lift": score.lift_term,
-            **{f"stroke/{name}": value for name, value in strokes.items()},
-            "clipped": clipped,
-            "bound_gap": score.bound_gap,
-            "_bound_gap": score.has_bound,
-            "optimality_gap": score.optimality_gap,
-            "_optimality_gap": score.has_gap,
-        }
-
-    def _observe(self) -> np.ndarray:
-        seen = np.empty(self.observation_space.shape or (), dtype=np.float32)
-        seen[:, :-3] = self._features[self._insect]
-        seen[:, -3:] = self._felt
-        return seen
-
-    def _picture(self, row: int) -> np.ndarray:
-        from flapenv.drawing import wingbeat_image
-
-        return wingbeat_image(*self._last_beat(row), self.problem.model)
-
-    def _last_beat(self, row: int) -> tuple[Insect, Stroke]:
-        """Insect and stroke of a row's last wingbeat; the insect's own stroke before an episode's first.
-
-        With SAME_STEP autoreset the next episode has begun already when the last beat is to be seen.
-        """
-        just_begun = self._felt[row, 2] == 1 and self.autoreset_mode is not AutoresetMode.SAME_STEP
-        if just_begun or self._beaten[row] == NOT_YET:
-            insect = self.flyers[int(self._insect[row])]
-            return insect, insect.stroke
-        values = {name: float(value[row]) for name, value in self._stroke.items()}
-        return self.flyers[int(self._beaten[row])], Stroke(**values)
-
-
-def _varying_bounds(box: StrokeBox, reference: StrokeReference) -> list[np.ndarray]:
-    """Bounds that differ from wing to wing in the units of an action; a fixed parameter has one."""
-    seen = []
-    if not box.is_relative("frequency"):  # the same in Hz is another multiple of every wing's own
-        ends = box.bounds("frequency", reference)
-        seen += [np.log(end / reference.frequency) for end in ends[: 1 + box.is_free("frequency")]]
-    if box.is_relative("flap_amplitude"):
-        ends = box.bounds("flap_amplitude", reference)
-        seen += [(end - AMPLITUDE_0) / AMPLITUDE_1 for end in ends[: 1 + box.is_free("flap_amplitude")]]
-    return seen
-
-
-def _seen(values: np.ndarray) -> np.ndarray:
-    """Values as an observation shows them."""
-    return np.clip(values, -OBSERVATION_LIMIT, OBSERVATION_LIMIT).astype(np.float32, copy=False)
+from flapenv.problem import HoverProblem
 
 
 @described(actions=action_table(stroke_rows(HoverProblem().box, StrokeCoordinates(HoverProblem().box).axis_names)))
@@ -307,3 +72,37 @@ class HoverEnv(SingleEnv):
     """
 
     batch_class = HoverVectorEnv
+
+    def __init__(self, *, render_mode: str | None = None, **arguments: Any) -> None:
+        """Make a batch of one; arguments as `SingleEnv`."""
+        super().__init__(render_mode=render_mode, **arguments)
+        batch = self._hover
+        plain = serves(batch.problem.model)
+        self._beat = HoverOfOne(batch.objective, batch.coordinates, batch.accelerator) if plain else None
+        self._shape = self.action_space.shape
+
+    @property
+    def _hover(self) -> HoverVectorEnv:
+        """The batch."""
+        assert isinstance(self.batch, HoverVectorEnv)
+        return self.batch
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[np.ndarray, Info]:
+        """Begin an episode; `options={"insect": name}` chooses the insect.
+
+        Raises:
+            TypeError: for a seed or options of another type.
+            ValueError: for an unknown option.
+        """
+        if seed is not None or options or self._beat is None:
+            return super().reset(seed=seed, options=options)
+        return self._hover.start_one(self.np_random)
+
+    def step(self, action: np.ndarray) -> tuple[np.ndarray, Any, bool, bool, Info]:
+        """One wingbeat, in plain numbers where the model allows it; all else as `SingleEnv`."""
+        if self._beat is None:
+            return super().step(action)
+        plain = type(action) is np.ndarray and action.dtype == np.float32 and action.shape == self._shape
+        if not plain or not math.isfinite(sum(action.tolist())):
+            action = checked_actions("action", action, self._shape)
+        return self._hover.advance_one(self._beat, action)

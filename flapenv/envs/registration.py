@@ -2,7 +2,9 @@
 
 import gymnasium as gym
 
-_ENTRY_POINTS = {"flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover:HoverVectorEnv")}
+_ENTRY_POINTS = {
+    "flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover_batch:HoverVectorEnv"),
+}
 ENV_IDS: tuple[str, ...] = tuple(_ENTRY_POINTS)
 
 

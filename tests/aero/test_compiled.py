@@ -66,10 +66,12 @@ def test_the_environment_rewards_the_same_with_either(problem: str) -> None:
     rewards = []
     for accelerator in ("numpy", "numba"):
         env = HoverVectorEnv(512, problem=problem, accelerator=accelerator, autoreset_mode="SAME_STEP")
+        assert (env.objective.kernel is KERNEL) == (accelerator == "numba")
         env.reset(seed=1)
         env.action_space.seed(1)
         rewards.append(env.step(env.action_space.sample())[1])
     np.testing.assert_allclose(*rewards, rtol=3e-5, atol=1e-5)
+    assert np.any(rewards[0] != rewards[1])  # by another path
 
 
 @pytest.mark.parametrize(
