@@ -22,12 +22,14 @@ class TermHistory:
 
     Attributes:
         force: of both wings on the body along x₁, y, z₁, shape (steps, 3) [N].
+        tangential_force: of each wing along its ê_φ, shape (2, steps) [N].
         flap_torque: Q_φ about the flapping axis, shape (2, steps) [N m].
         pitch_torque: Q_θ about the pitching axis, shape (2, steps) [N m].
         power: Q_φ φ̇ + Q_θ θ̇, shape (2, steps) [W].
     """
 
     force: np.ndarray
+    tangential_force: np.ndarray
     flap_torque: np.ndarray
     pitch_torque: np.ndarray
     power: np.ndarray
