@@ -17,8 +17,8 @@ ACCOUNTING = ("elastic", "positive")
 class TermHistory:
     """One term of the force over the wingbeat, in stroke-plane axes (docs/axes.md).
 
-    Torques and power are the muscles': what they must exert and pay against this term. Rows of the torques and the
-    power are the right and the left wing.
+    Torques and power are the muscles': what they must exert and pay against this term. Rows of the tangential
+    force, the torques and the power are the right and the left wing.
 
     Attributes:
         force: of both wings on the body along x₁, y, z₁, shape (steps, 3) [N].

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from flapenv.animation.film import animate
+from flapenv.animation.film import FRAMES, animate
 from flapenv.animation.sheet import WIDTH
 from flapenv.insects import INSECTS, load_insect
 from flapenv.optimum import optimum
@@ -38,7 +38,7 @@ def main(words: Sequence[str] | None = None) -> None:
         help="whose optimum is meant, and whose model is used (default: %(default)s)",
     )
     parser.add_argument("--out", type=Path, default=Path("wingbeat.gif"), metavar="FILE", help="ends in .gif or .mp4")
-    parser.add_argument("--frames", type=int, default=60, help="of the wingbeat (default: %(default)s)")
+    parser.add_argument("--frames", type=int, default=FRAMES, help="of the wingbeat (default: %(default)s)")
     parser.add_argument("--width", type=int, default=WIDTH, metavar="PIXELS", help="default: %(default)s")
     asked = parser.parse_args(words)
     try:

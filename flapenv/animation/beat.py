@@ -10,6 +10,7 @@ from flapenv.aero.axes import LEFT, RIGHT, flapping_directions
 from flapenv.aero.checks import require_real
 from flapenv.aero.history import WingbeatHistory
 from flapenv.aero.motions import Motion
+from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.case import model_wing
 from flapenv.insects import Insect
@@ -33,7 +34,7 @@ class DrawnBeat:
     Points and vectors lie in the plane of the section at r̂₂ R: along ê_φ, forward, then along ẑ₁, up.
 
     Attributes:
-        name: of the insect.
+        name: of the insect, and whether the stroke is its own.
         motion: what is beaten.
         wing: the wing, as the coefficients go with it.
         history: forces, torques and power by the blade element.
@@ -120,7 +121,7 @@ def drawn_beat(
     *,
     model: HoverModel | None = None,
     terms: Sequence[str] | None = None,
-    frames: int = 60,
+    frames: int,
 ) -> DrawnBeat:
     """A wingbeat by the blade element, and what is drawn of it.
 
@@ -156,8 +157,9 @@ def drawn_beat(
     force = np.zeros((len(at.flap), 2))
     for term in of_air:
         force += np.stack([term.tangential_force.sum(axis=0), term.force[:, 2]], axis=-1)
+    own = isinstance(motion, Stroke) and motion == insect.stroke
     return DrawnBeat(
-        name=insect.name,
+        name=f"{insect.name}'s own stroke" if own else insect.name,
         motion=motion,
         wing=wing,
         history=history,

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-PALETTE = 64
-"""Colours of a GIF."""
-LOOKED_AT = 6
-"""Frames from which the palette is chosen."""
+from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE, RED
+
+TINTS = 10
+"""Steps from white to each colour of a picture in the palette of a GIF."""
 QUALITY = 8
 """Of an MP4, from 1 to 10; lines and letters want more than films."""
 
@@ -60,18 +60,21 @@ def whole_file(path: Path) -> Iterator[Path]:
         beside.unlink(missing_ok=True)
 
 
+def _palette() -> list[int]:
+    """Tints of the colours that pictures are drawn with, from white on; red, green, blue in turn."""
+    inks = np.array([[int(ink[i : i + 2], 16) for i in (1, 3, 5)] for ink in (BLUE, ORANGE, GREEN, RED, BLACK)])
+    shares = np.arange(1, TINTS + 1)[:, None, None] / TINTS
+    tints = np.rint(255 + shares * (inks - 255.0)).astype(int)
+    return [255, 255, 255, *tints.ravel().tolist()]
+
+
 def write_gif(path: Path, frames: Iterable[np.ndarray], frames_per_second: float) -> None:
     """Frames (height, width, 3) of uint8 as a GIF that loops for ever; delays are whole hundredths of a second."""
     from PIL import Image
 
-    images = [Image.fromarray(frame) for frame in frames]
-    looked_at = images[:: max(1, len(images) // LOOKED_AT)]
-    width, height = images[0].size
-    sheet = Image.new("RGB", (width, height * len(looked_at)))
-    for i, image in enumerate(looked_at):
-        sheet.paste(image, (0, i * height))
-    palette = sheet.quantize(PALETTE, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    first, *rest = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(_palette())
+    first, *rest = (Image.fromarray(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
     delay = 10 * round(100 / frames_per_second)
     first.save(path, format="GIF", save_all=True, append_images=rest, duration=delay, loop=0, optimize=True)
 
@@ -84,7 +87,7 @@ def write_mp4(path: Path, frames: Iterable[np.ndarray], frames_per_second: float
     """
     import imageio_ffmpeg
 
-    frames = iter(frames)
+    frames, written = iter(frames), 1
     first = next(frames)
     height, width = first.shape[:2]
     encoder = imageio_ffmpeg.write_frames(
@@ -95,8 +98,13 @@ def write_mp4(path: Path, frames: Iterable[np.ndarray], frames_per_second: float
         encoder.send(first.tobytes())
         for frame in frames:
             encoder.send(frame.tobytes())
-    if path.stat().st_size == 0:
-        raise OSError(f"{path} could not be encoded")
+            written += 1
+    try:  # the encoder's end says nothing of whether it went well
+        kept, _ = imageio_ffmpeg.count_frames_and_secs(str(path))
+    except RuntimeError:
+        kept = 0
+    if kept != written:
+        raise OSError(f"{kept} of {written} frames were encoded; allowed: all (is the disk full?)")
 
 
 WRITERS: dict[str, Callable[[Path, Iterable[np.ndarray], float], None]] = {".gif": write_gif, ".mp4": write_mp4}

@@ -14,6 +14,8 @@ from flapenv.drawing import require_matplotlib
 from flapenv.insects import Insect, as_insect
 from flapenv.model import HoverModel, as_model
 
+FRAMES, FRAMES_PER_SECOND = 60, 25.0
+"""A wingbeat that one can follow, 2.4 s long."""
 FASTEST = 50.0
 """Frames a second; a GIF with shorter delays is slowed down by browsers."""
 WIDTHS = (320, 3840)
@@ -27,8 +29,8 @@ def animate(
     compare: Motion | None = None,
     model: HoverModel | Mapping[str, Any] | None = None,
     terms: Sequence[str] | None = None,
-    frames: int = 60,
-    frames_per_second: float = 25.0,
+    frames: int = FRAMES,
+    frames_per_second: float = FRAMES_PER_SECOND,
     width: int = WIDTH,
     progress: bool = False,
 ) -> Path:

@@ -9,16 +9,17 @@ import numpy as np
 
 from flapenv.aero.axes import LEFT, RIGHT
 from flapenv.animation.beat import DrawnBeat
-from flapenv.drawing import BLUE, GREY, ORANGE, RED
+from flapenv.drawing import BLACK, BLUE, GREY, ORANGE, RED
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLACK = "#000000"
 SIDE_MARGIN, MARGIN = 0.14, 0.06
 """Around the section's path: left of it, where the scale stands, and elsewhere, over its width or height."""
 ROOM_USED, TALLEST_WEIGHT = 0.96, 0.7
 """How far arrows may go into the room there is, and how much of the height one weight may take."""
+LEAST_HEIGHT = 1.7
+"""Of the panel, over that of the section as it turns."""
 SMALLEST_FORCE = 1e-6
 """Body weights; stands in for zero where a force divides."""
 
@@ -74,8 +75,11 @@ class SectionPanel:
         ends = np.concatenate([edge for beat in beats for edge in (beat.leading, beat.trailing)])
         axis, force = (np.concatenate([getattr(beat, name) for beat in beats]) for name in ("axis", "force"))
         (left, bottom), (right, top) = ends.min(axis=0), ends.max(axis=0)
+        shape = axes.bbox.height / axes.bbox.width
+        spare = max(0.0, LEAST_HEIGHT * (top - bottom) / shape - (right - left)) / 2  # where a wing hardly flaps
+        left, right = left - spare, right + spare
         left, right = left - SIDE_MARGIN * (right - left), right + MARGIN * (right - left)
-        height = (right - left) * axes.bbox.height / axes.bbox.width
+        height = (right - left) * shape
         if np.min(force[:, 1]) > -SMALLEST_FORCE:  # all arrows go up: give them the room
             bottom -= MARGIN * height
         else:
@@ -172,7 +176,7 @@ class TracePanel:
         traces: Sequence[tuple[np.ndarray, str, str, str]],
         label: str,
         mean: float | None = None,
-        top: float = 0.0,
+        limits: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         """Draw the traces.
 
@@ -182,7 +186,7 @@ class TracePanel:
             traces: values (steps,), colour, dash and name of each.
             label: of the vertical axis.
             mean: drawn as a line with its number, where given.
-            top: the largest value of the panels that this one compares with.
+            limits: with a mean, the least and the largest value of all panels that this one compares with.
         """
         self.time, self.traces = beat.time, [trace[0] for trace in traces]
         axes.axhline(0, color=GREY, lw=0.5)
@@ -192,9 +196,8 @@ class TracePanel:
         if mean is not None:
             number = f"mean {mean:.3f}" if abs(mean) < 10 else f"mean {mean:.2f}"
             axes.axhline(mean, color=GREY, lw=1, ls="--", label=number)
-            low = min(0.0, float(np.min(traces[0][0])))
-            reach = max(top - low, SMALLEST_FORCE)
-            axes.set_ylim(low - 0.05 * reach, low + 1.35 * reach)
+            reach = limits[1] - limits[0]
+            axes.set_ylim(limits[0] - 0.05 * reach, limits[0] + 1.35 * reach)  # the legend stands above
         axes.legend(ncols=3, fontsize=8, loc="upper right", frameon=False, columnspacing=1, handlelength=1.6)
         self.line = axes.axvline(0, color=BLACK, lw=0.8, animated=True)
         self.dots = [axes.plot([], [], "o", color=trace[1], mec=BLACK, ms=5, animated=True)[0] for trace in traces]

@@ -8,8 +8,8 @@ import numpy as np
 
 from flapenv.aero.stroke import Stroke
 from flapenv.animation.beat import DrawnBeat
-from flapenv.animation.panels import BLACK, AbovePanel, Panel, SectionPanel, TracePanel
-from flapenv.drawing import BLUE, GREEN, ORANGE, RED, stroke_text
+from flapenv.animation.panels import AbovePanel, Panel, SectionPanel, TracePanel
+from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE, RED, stroke_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +18,8 @@ WIDTH, HEIGHT = 960, 540
 """Pixels at which lines and letters have their nominal size."""
 ROUNDING = 1e-3
 """Pixels that keep a size in inches from being cut down to one pixel less."""
+SMALLEST_RANGE = 1e-9
+"""Of an axis, in its unit, where nothing varies."""
 
 
 class MovingSheet:
@@ -40,10 +42,10 @@ class MovingSheet:
         figure: Any = Figure(figsize=size, dpi=dpi, layout=ConstrainedLayoutEngine(w_pad=0.08, h_pad=0.06))
         canvas: Any = FigureCanvasAgg(figure)
         self.canvas, self.beats, self.panels = canvas, beats, list[Sequence[Panel]]()
-        tops = [max(np.max(beat.force[:, 1]) for beat in beats), max(np.max(beat.specific_power) for beat in beats)]
+        limits = _limits([beat.force[:, 1] for beat in beats]), _limits([beat.specific_power for beat in beats])
         sections = []
         for beat, part in zip(beats, figure.subfigures(len(beats), 1, squeeze=False)[:, 0], strict=True):
-            section, others = _panels(part, beat, tops)
+            section, others = _panels(part, beat, *limits)
             sections.append(section)
             self.panels.append([section, *others])
         canvas.draw()
@@ -68,7 +70,15 @@ class MovingSheet:
         return np.asarray(self.canvas.buffer_rgba())[..., :3].copy()
 
 
-def _panels(part: Any, beat: DrawnBeat, tops: Sequence[float]) -> tuple[SectionPanel, list[Panel]]:
+def _limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
+    """The least and the largest of all, and zero."""
+    low, high = float(np.min(values, initial=0.0)), float(np.max(values, initial=0.0))
+    return low, max(high, low + SMALLEST_RANGE)
+
+
+def _panels(
+    part: Any, beat: DrawnBeat, lift_limits: tuple[float, float], power_limits: tuple[float, float]
+) -> tuple[SectionPanel, list[Panel]]:
     """The panels of one beat: the section; the wings from above and three traces."""
     part.suptitle(
         f"{beat.name}: weight support {beat.weight_support:.3f}, {beat.mean_power:.2f} W/kg\n{_motion_text(beat)}",
@@ -89,11 +99,12 @@ def _panels(part: Any, beat: DrawnBeat, tops: Sequence[float]) -> tuple[SectionP
     others: list[Panel] = [
         AbovePanel(part.add_subplot(above), beat),
         TracePanel(angles_axes, beat, angles, "angle [°]"),
-        TracePanel(lift_axes, beat, [(lift, BLUE, "-", "")], "lift / weight", beat.weight_support, tops[0]),
-        TracePanel(power_axes, beat, [(power, RED, "-", "")], "power [W/kg]", beat.mean_power, tops[1]),
+        TracePanel(lift_axes, beat, [(lift, BLUE, "-", "")], "lift / weight", beat.weight_support, lift_limits),
+        TracePanel(power_axes, beat, [(power, RED, "-", "")], "power [W/kg]", beat.mean_power, power_limits),
     ]
     angles_axes.set(ylim=(-110, 190), yticks=range(-90, 181, 90))
     power_axes.set(xlabel="t/T", xlim=(0, 1))
+    part.align_ylabels([angles_axes, lift_axes, power_axes])
     return SectionPanel(part.add_subplot(upper), beat), others
 
 
