@@ -8,6 +8,7 @@ from flapenv.aero.motions import FourierMotion, SampledMotion
 from flapenv.aero.planform import FunctionPlanform, TabulatedPlanform
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
+from flapenv.animation.film import animate
 from flapenv.envs.registration import register_envs
 from flapenv.insects import INSECTS, ForceConstants, HoverReference, Insect, WingFactors, load_insect
 from flapenv.model import COEFFICIENTS, HoverModel
@@ -36,6 +37,7 @@ __all__ = [
     "Wing",
     "WingFactors",
     "__version__",
+    "animate",
     "evaluate",
     "load_insect",
     "optimum",

@@ -1,7 +1,7 @@
 """Options of the aerodynamic model: air, coefficients, and what enters the induced power factor."""
 
 import warnings
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from typing import Any, Literal
 
 import numpy as np
@@ -99,6 +99,20 @@ class HoverModel:
     def has_proven_bound(self) -> bool:
         """Whether the proofs of docs/optimum.md hold: (2.7), (2.12), profile drag or none, elastic power."""
         return self.is_plate and self.accounting == "elastic"
+
+
+def as_model(value: Any) -> HoverModel:
+    """A `HoverModel` from itself, the dict of its options, or None for the paper's.
+
+    Raises:
+        TypeError: for anything else, or an unknown option.
+        ValueError: for an option out of range.
+    """
+    if value is None or isinstance(value, Mapping):
+        return HoverModel(**(value or {}))
+    if isinstance(value, HoverModel):
+        return value
+    raise TypeError(f"model = {value!r} is not allowed; allowed: a HoverModel or a dict of its options")
 
 
 def warn_of_aspect_ratio(name: str, aspect_ratio: Real, model: HoverModel, *, stacklevel: int) -> None:

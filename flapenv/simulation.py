@@ -15,7 +15,7 @@ from flapenv.aero.motions import Motion
 from flapenv.aero.stroke import Stroke
 from flapenv.case import force_law, hover_case, model_wing
 from flapenv.insects import Insect, as_insect
-from flapenv.model import HoverModel, warn_of_aspect_ratio
+from flapenv.model import HoverModel, as_model, warn_of_aspect_ratio
 from flapenv.performance import checked
 
 OPTIONS = tuple(name for name, p in inspect.signature(blade_element).parameters.items() if p.kind is p.KEYWORD_ONLY)[1:]
@@ -49,10 +49,7 @@ def simulate(
     Source: Nabawy & Crowther (2014), Part II, (2.3)-(2.16).
     """
     insect = as_insect(insect)
-    if model is None or isinstance(model, Mapping):
-        model = HoverModel(**(model or {}))
-    if not isinstance(model, HoverModel):
-        raise TypeError(f"model = {model!r} is not allowed; allowed: a HoverModel or a dict of its options")
+    model = as_model(model)
     for name, value in options.items():
         if name not in OPTIONS:
             raise TypeError(f"{name} = {value!r} is not an option of simulate; {allowed(name, OPTIONS)}")

@@ -226,6 +226,7 @@ def _aerodynamic(
     flap_torque, pitch_torque = (-np.stack([right[i], left[i]]) for i in (2, 3))
     return TermHistory(
         force=total,
+        tangential_force=np.stack([right[0], left[0]]),
         flap_torque=flap_torque,
         pitch_torque=pitch_torque,
         power=flap_torque * at.flap_rate + pitch_torque * at.pitch_rate,
@@ -273,11 +274,13 @@ def _strip_forces(
 def _inertia(wing: Wing, at: Kinematics) -> TermHistory:
     """The wings' own inertia, by exact moments of mass."""
     moments = wing_inertia(wing)
-    flap_torque, pitch_torque = (
-        np.stack([torque, torque]) for torque in (moments.flap_torque(at), moments.pitch_torque(at))
+    tangential, flap_torque, pitch_torque = (
+        np.stack([value, value])
+        for value in (moments.tangential_force(at), moments.flap_torque(at), moments.pitch_torque(at))
     )
     return TermHistory(
         force=moments.pair_force(at),
+        tangential_force=tangential,
         flap_torque=flap_torque,
         pitch_torque=pitch_torque,
         power=flap_torque * at.flap_rate + pitch_torque * at.pitch_rate,

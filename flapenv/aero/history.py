@@ -17,17 +17,19 @@ ACCOUNTING = ("elastic", "positive")
 class TermHistory:
     """One term of the force over the wingbeat, in stroke-plane axes (docs/axes.md).
 
-    Torques and power are the muscles': what they must exert and pay against this term. Rows of the torques and the
-    power are the right and the left wing.
+    Torques and power are the muscles': what they must exert and pay against this term. Rows of the tangential
+    force, the torques and the power are the right and the left wing.
 
     Attributes:
         force: of both wings on the body along x₁, y, z₁, shape (steps, 3) [N].
+        tangential_force: of each wing along its ê_φ, shape (2, steps) [N].
         flap_torque: Q_φ about the flapping axis, shape (2, steps) [N m].
         pitch_torque: Q_θ about the pitching axis, shape (2, steps) [N m].
         power: Q_φ φ̇ + Q_θ θ̇, shape (2, steps) [W].
     """
 
     force: np.ndarray
+    tangential_force: np.ndarray
     flap_torque: np.ndarray
     pitch_torque: np.ndarray
     power: np.ndarray

@@ -53,6 +53,13 @@ class WingInertia:
             - self.chord * at.flap_rate**2 * sine * cosine
         )
 
+    def tangential_force(self, at: Kinematics) -> np.ndarray:
+        """Force of one wing's inertia along its ê_φ, -M_r φ̈ + M_ξ (θ̈ cos θ - (θ̇² + φ̇²) sin θ), shape (n,) [N]."""
+        turning = at.pitch_rate**2 + at.flap_rate**2
+        return -self.first_radius * at.flap_acceleration + self.first_chord * (
+            at.pitch_acceleration * np.cos(at.pitch) - turning * np.sin(at.pitch)
+        )
+
     def pair_force(self, at: Kinematics) -> np.ndarray:
         """Force of both wings' inertia on the body, minus the rate of their momentum, in stroke-plane axes (n, 3) [N].
 
