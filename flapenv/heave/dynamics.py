@@ -26,7 +26,7 @@ from flapenv.heave.trim import BOX, HeaveTrim, heave_trim
 from flapenv.insects import Insect
 from flapenv.model import HoverModel
 
-QUADRATURE_TOLERANCE = 1e-4
+QUADRATURE_TOLERANCE = 3e-5
 """Asked of `time_nodes`, which is on the safe side: over `BOX` the averages come out within 1e-5."""
 SMALL_EXPONENT = 1e-2
 """Below this φ₂ is summed from its series; the direct form would lose digits."""

@@ -67,7 +67,7 @@ class HeaveTrim:
 
 @functools.cache
 def trim_waveform() -> Stroke:
-    """The waveform of least power at `HOVER_AMPLITUDE` in `BOX`, the same for every wing; its frequency is arbitrary."""
+    """The waveform of least power at `HOVER_AMPLITUDE` in `BOX`, the same for every wing; its frequency is any."""
     box = StrokeBox(frequency_ratio=ANY_FREQUENCY, flap_amplitude=(HOVER_AMPLITUDE, HOVER_AMPLITUDE))
     return optimum(load_insect("hawkmoth"), HoverProblem(box=box)).stroke
 
