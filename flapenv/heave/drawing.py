@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flapenv.aero.stroke import Stroke
-from flapenv.drawing import BLUE, GREY, RED, draw_wing_sections, figure_image, require_matplotlib, stroke_text
+from flapenv.drawing import BLUE, GREY, ORANGE, RED, draw_wing_sections, figure_image, require_matplotlib, stroke_text
 from flapenv.insects import Insect
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -29,28 +30,41 @@ def draw_heave(insect: Insect, stroke: Stroke, path: np.ndarray, *, beats: int, 
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.6, 6.4), dpi=100, layout="constrained")
-    grid = figure.add_gridspec(2, 1, height_ratios=(1.3, 1))
+    grid = figure.add_gridspec(2, 2, height_ratios=(1, 1), width_ratios=(1.4, 1))
     figure.suptitle(f"{insect.name}, beat {len(path) - 1} of {beats}\n{stroke_text(stroke)}", fontsize=11)
-    axes = figure.add_subplot(grid[0])
+    _draw_path(figure.add_subplot(grid[0, :]), path, beats, limit)
+    draw_wing_sections(figure.add_subplot(grid[1, 0]), insect, stroke)
+    axes = figure.add_subplot(grid[1, 1])
+    phase = np.linspace(0, 2 * np.pi, 361)
+    axes.plot(phase / (2 * np.pi), np.degrees(stroke.flap_angle(phase)), color=BLUE, label="φ flap")
+    axes.plot(phase / (2 * np.pi), np.degrees(stroke.pitch_angle(phase)), "--", color=ORANGE, label="θ pitch")
+    axes.axhline(0, color=GREY, lw=0.5)
+    axes.set(xlabel="t/T", ylabel="angle [°]", xlim=(0, 1), ylim=(-100, 135), yticks=range(-90, 91, 45))
+    axes.legend(ncols=2, fontsize=8, loc="upper center", frameon=False)
+    return figure
+
+
+def _draw_path(axes: "Axes", path: np.ndarray, beats: int, limit: float) -> None:
+    """Heights over the beats, and the band."""
     axes.axhspan(-limit, limit, color=BLUE, alpha=0.06, lw=0)
     for edge in (-limit, limit):
         axes.axhline(edge, color=RED, lw=1, ls="--")
+    axes.annotate(
+        f"lost beyond ±{limit:g} R", (0.01, limit), (0, -14), textcoords="offset points", color=RED, fontsize=9
+    )
     axes.axhline(0, color=GREY, lw=0.8)
     axes.plot(np.arange(len(path)), path, color=BLUE)
-    axes.plot(len(path) - 1, path[-1], "o", color=BLUE)
+    axes.plot(len(path) - 1, path[-1], "o", color=BLUE, clip_on=False)
+    late = len(path) > 0.8 * beats
     axes.annotate(
         f"z = {path[-1]:+.2f} R",
         (len(path) - 1, path[-1]),
-        xytext=(-8 if len(path) > 0.8 * beats else 8, 8),
+        (-8 if late else 8, -14 if path[-1] > 0.8 * limit else 8),
         textcoords="offset points",
-        ha="right" if len(path) > 0.8 * beats else "left",
+        ha="right" if late else "left",
         color=BLUE,
     )
-    axes.set(
-        xlim=(0, beats), ylim=(-1.15 * limit, 1.15 * limit), xlabel="beat", ylabel="height z/R", title="lost beyond ---"
-    )
-    draw_wing_sections(figure.add_subplot(grid[1]), insect, stroke)
-    return figure
+    axes.set(xlim=(0, beats), ylim=(-1.12 * limit, 1.12 * limit), xlabel="beat", ylabel="height z/R")
 
 
 def heave_image(insect: Insect, stroke: Stroke, path: np.ndarray, *, beats: int, limit: float) -> np.ndarray:
