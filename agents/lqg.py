@@ -289,7 +289,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (ValueError, TypeError, OSError) as problem:
         print(f"error: {problem}", file=sys.stderr)
         return 2
-    front = fly_front(insect, episodes=options.episodes, seed=options.seed)
+    front = fly_front(insect, ratios=RATIOS, episodes=options.episodes, seed=options.seed)
     print(text_table([HEADER, *front_rows(front)]))
     save_front(front, folder)
     print(f"\n{options.episodes} episodes, seed {options.seed}; kept in {folder}/")
