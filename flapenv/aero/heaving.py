@@ -23,14 +23,14 @@ import numpy as np
 from flapenv.aero.checks import record
 from flapenv.aero.planform import Planform
 from flapenv.aero.quadrature import gauss_rule, graded_rule
-from flapenv.aero.stroke import flap_speed, pitch_waveform
+from flapenv.aero.stroke import SMALLEST_SHAPE, pitch_waveform
 
 SPAN_NODES = 6
 """Strips of the span: exact at rest, within 1e-4 at a tenth of the tip's speed."""
 MANY_STRIPS = 64
 """Strips of a planform that are replaced by fewer with the same moments."""
-CHUNK_BYTES = 2**18
-"""Of the largest temporary of a chunk of rows, so that it stays in the cache."""
+CHUNK_BYTES = 2**20
+"""Of the largest temporary of a chunk of rows: near the cache, and large enough for calls to cost little beside it."""
 LEAST_SQUARE = 1e-24
 """Stands in for h² = 0 where 1/h is multiplied by what vanishes with it."""
 
@@ -124,10 +124,11 @@ def heave_averages(
     count = len(columns[0])
     size = max(1, CHUNK_BYTES // (2 * nodes * rule.radii.shape[-1] * dtype.itemsize))
     out = np.empty((4, count), dtype=dtype)
+    scratch = np.empty((min(size, count), rule.radii.shape[-1] + 6, 2 * nodes), dtype=dtype)  # fresh memory is slow
     for start in range(0, count, size):
         rows = slice(start, start + size)
         own = SpanRule(**{name: value[wing[rows]] for name, value in vars(rule).items()})
-        _average(own, *(column[rows] for column in columns), nodes=nodes, out=out[:, rows])
+        _average(own, *(column[rows] for column in columns), nodes=nodes, scratch=scratch, out=out[:, rows])
     return HeaveAverages(lift=out[0], lift_slope=out[1], power=out[2], power_slope=out[3])
 
 
@@ -140,9 +141,10 @@ def _average(
     pitch_phase: np.ndarray,
     *,
     nodes: int,
+    scratch: np.ndarray,
     out: np.ndarray,
 ) -> None:
-    """The four averages of a chunk, into `out` of shape (4, n)."""
+    """The four averages of a chunk, into `out` of shape (4, n); strips and sums live in `scratch`."""
     square, sine, cosine, weights = _instants(flap_shape, pitch_amplitude, pitch_shape, pitch_phase, nodes)
     speed = np.sqrt(square)
     normal = np.multiply(sine, weights)  # weighted: sin θ, then u sin θ cos θ and sin² θ
@@ -154,11 +156,13 @@ def _average(
     along *= cosine  # weighted u² cos² θ
 
     relative = climb[:, None] / rule.radii
-    h = square[:, None, :] + (relative * relative + LEAST_SQUARE)[:, :, None]
+    sums, h = scratch[: len(climb), :6], scratch[: len(climb), 6:]
+    np.add(square[:, None, :], (relative * relative + LEAST_SQUARE)[:, :, None], out=h)
     np.sqrt(h, out=h)
-    h1, h2, h3 = np.moveaxis(np.matmul(rule.speed_weights, h), 1, 0)
+    np.matmul(rule.speed_weights, h, out=sums[:, :3])
     np.reciprocal(h, out=h)
-    k_inverse, k0, k1 = np.moveaxis(np.matmul(rule.slope_weights, h), 1, 0)
+    np.matmul(rule.slope_weights, h, out=sums[:, 3:])
+    h1, h2, h3, k_inverse, k0, k1 = np.moveaxis(sums, 1, 0)
 
     mixed_h2, mixed_k0, upright_h1 = _sum(mixed, h2), _sum(mixed, k0), _sum(upright, h1)
     out[0] = mixed_h2 - climb * upright_h1
@@ -184,11 +188,20 @@ def _instants(
         np.sin(length * fractions, out=flap[:, piece])
         np.multiply(np.sin(length * (1 - fractions)), sign, out=pitch[:, piece])
         np.multiply(length * (1 / math.pi), shares, out=weights[:, piece])
-    speed = flap_speed(flap, flap_shape[:, None])
-    speed *= math.pi / 2
+    square = _speed_square(np.multiply(flap, flap, out=flap), np.clip(flap_shape, SMALLEST_SHAPE, None)[:, None])
     theta = pitch_waveform(pitch, pitch_shape[:, None])
     theta *= pitch_amplitude[:, None]
-    return np.multiply(speed, speed, out=speed), np.sin(theta), np.cos(theta), weights
+    sine = np.sin(theta)
+    return square, sine, np.cos(theta, out=theta), weights
+
+
+def _speed_square(cosine_square: np.ndarray, shape: np.ndarray) -> np.ndarray:
+    """u² = (π/2)² Cφ² cos² ωt/(asin² Cφ (1 - Cφ² sin² ωt)): the square of (2.1)'s rate over its mean, rootless."""
+    square = cosine_square * (shape * shape)
+    square += (1 - shape) * (1 + shape)
+    np.divide(cosine_square, square, out=square)
+    square *= (math.pi / 2 * shape / np.arcsin(shape)) ** 2
+    return square
 
 
 def _sum(one: np.ndarray, other: np.ndarray) -> np.ndarray:

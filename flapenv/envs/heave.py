@@ -157,14 +157,15 @@ class HeaveVectorEnv(BatchEnv):
 
     def _keep(self, beat: HeaveBeat, strokes: dict[str, np.ndarray], actions: np.ndarray, mask: np.ndarray) -> None:
         """Take what a beat came to into the state of the rows of `mask`; a row that is lost stays at the edge."""
-        self._height[mask] = np.clip(beat.height, -HEIGHT_LIMIT, HEIGHT_LIMIT)[mask]
-        self._velocity[mask] = np.clip(beat.velocity, -VELOCITY_LIMIT, VELOCITY_LIMIT)[mask]
-        self._support[mask] = beat.weight_support[mask]
-        self._action[mask] = np.clip(actions, -1, 1)[mask]
-        self._beat_number[mask] += 1
-        for name, value in strokes.items():
-            self._stroke[name][mask] = value[mask]
-        self._beaten[mask] = self._insect[mask]
+        np.copyto(self._height, np.clip(beat.height, -HEIGHT_LIMIT, HEIGHT_LIMIT), where=mask)
+        np.copyto(self._velocity, np.clip(beat.velocity, -VELOCITY_LIMIT, VELOCITY_LIMIT), where=mask)
+        np.copyto(self._support, beat.weight_support, where=mask)
+        np.copyto(self._action, np.clip(actions, -1, 1), where=mask[:, None])
+        self._beat_number += mask
+        if self.render_mode is not None:
+            for name, value in strokes.items():
+                np.copyto(self._stroke[name], value, where=mask)
+            np.copyto(self._beaten, self._insect, where=mask)
 
     def _terms(self, beat: HeaveBeat, lost_beats: np.ndarray) -> dict[str, np.ndarray]:
         """The terms of the reward, each of shape (rows,)."""
