@@ -5,6 +5,7 @@ import pytest
 
 from flapenv import INSECTS, evaluate, load_insect
 from flapenv.aero.stroke import Stroke
+from flapenv.case import hover_case, lift_constant
 from flapenv.heave.dynamics import HeaveBeat, HeaveDynamics, _phi
 
 ALL = HeaveDynamics([load_insect(name) for name in INSECTS])
@@ -123,3 +124,43 @@ def test_single_precision_changes_a_beat_by_a_millionth() -> None:
     one, other = (d.beat(index, strokes, np.zeros(64), start, np.zeros(64)) for d in (ALL, single))
     np.testing.assert_allclose(other.velocity, one.velocity, atol=1e-6)
     np.testing.assert_allclose(other.specific_power, one.specific_power, rtol=1e-5)
+
+
+def within_a_beat(name: str, stroke: Stroke, gust: float, instants: int = 3000) -> tuple[float, ...]:
+    """Z [m], w [m/s] at the end of a beat from rest, Λ and P*, with the force of every instant moving the body."""
+    insect, model = load_insect(name), ALL.model
+    length = insect.wing.length
+    r_hat, areas = insect.wing.shape.strips(12)
+    constant = lift_constant(hover_case(insect, model), model, stroke.mean_flap_speed, stroke.flap_amplitude)
+    factor = 2 * model.air_density * constant * areas * insect.wing.area / insect.mass
+    phase = 2 * np.pi * (np.arange(instants) + 0.5) / instants
+    along, sine, cosine = stroke.flap_rate(phase), np.sin(stroke.pitch_angle(phase)), np.cos(stroke.pitch_angle(phase))
+    step = 1 / (stroke.frequency * instants)
+    height = speed = support = power = 0.0
+    for k in range(instants):
+        flapping = along[k] * r_hat * length
+        middle = speed
+        for _ in range(2):  # midpoint rule
+            air = middle - gust
+            normal = -factor * np.hypot(flapping, air) * (-flapping * cosine[k] + air * sine[k])
+            lift, paid = float(np.sum(normal * sine[k])), float(np.sum(normal * cosine[k] * flapping))
+            middle = speed + 0.5 * step * (lift - model.gravity)
+        height += step * middle
+        speed += step * (lift - model.gravity)
+        support, power = support + lift / model.gravity / instants, power + paid / instants
+    return height, speed, support, power
+
+
+@pytest.mark.parametrize("name", ["cranefly", "hawkmoth"])  # those that a beat moves the most
+def test_what_goes_on_within_a_beat_hardly_counts(name: str) -> None:
+    index = np.array([list(INSECTS).index(name)])
+    for action in ([0.4, 1, 1, 1, 0], [0.5, 1, 1, 1, 0]):
+        strokes, _ = ALL.decode(np.array([action]), index)
+        stroke = Stroke(**{field: float(values[0]) for field, values in strokes.items()})
+        beat = ALL.beat(index, strokes, np.zeros(1), np.zeros(1), np.full(1, 0.02))
+        tip_speed, length = float(ALL.trim.tip_speed[index[0]]), load_insect(name).wing.length
+        height, velocity, support, power = within_a_beat(name, stroke, 0.02 * tip_speed)
+        assert beat.velocity[0] == pytest.approx(velocity / tip_speed, abs=4e-5)
+        assert beat.height[0] == pytest.approx(height / length, abs=4e-4)
+        assert beat.weight_support[0] == pytest.approx(support, abs=4e-4)
+        assert beat.specific_power[0] == pytest.approx(power, rel=3e-4)
