@@ -187,6 +187,21 @@ def test_an_early_end_never_pays_against_any_way_to_stay() -> None:
     assert np.all(info["power_excess"] - info["reward/height"] < WORST_BEAT)
 
 
+def test_the_most_wasteful_strokes_stay_below_the_worst_beat() -> None:
+    rng = np.random.default_rng(3)
+    dynamics = HeaveVectorEnv(1).dynamics
+    index = rng.integers(8, size=20_000)
+    actions = np.where(rng.random((20_000, 5)) < 0.5, np.sign(rng.uniform(-1, 1, (20_000, 5))), 0.0)
+    actions[:100] = MOST
+    actions[:100, 4] = -1
+    strokes, _ = dynamics.decode(actions, index)
+    for airspeed, worst in ((0.0, 8.7), (-0.3, 10.9)):
+        power = dynamics.forces(index, strokes, np.full(20_000, airspeed)).specific_power
+        excess = np.max(power / dynamics.trim.specific_power[index]) - 1
+        assert excess == pytest.approx(worst, abs=0.1)
+        assert excess + 0.5 * HEIGHT_LIMIT**2 < WORST_BEAT
+
+
 def test_being_lost_with_the_last_beat_is_an_end_and_no_truncation() -> None:
     env = HeaveEnv(insect="hawkmoth", beats=1)
     env.reset(seed=0, options={"height": 4.99, "velocity": 0.2})

@@ -38,3 +38,6 @@ def test_amplitude_is_the_one_input_that_pushes_both_ways_and_the_cheapest() -> 
             assert BEAT.hover[axis] == 1  # on the edge of the box
             assert lift[axis] < 0  # moving off it adds lift
             assert power[axis] / lift[axis] > power[flap] / lift[flap]  # at a higher price
+    prices = {name: power[axis] / lift[axis] for axis, name in enumerate(AXES) if name != "pitch_phase"}
+    page = {"flap_amplitude": 1.51, "flap_shape": 1.59, "pitch_amplitude": 2.75, "pitch_shape": 4.0}
+    assert prices == pytest.approx(page, abs=0.06)

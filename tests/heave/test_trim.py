@@ -50,6 +50,13 @@ def test_every_insect_carries_its_weight_and_the_units_fit() -> None:
         assert trim.reach[i] == pytest.approx(speed / (stroke.frequency * insect.wing.length))
 
 
+def test_the_numbers_of_the_page_are_those_of_the_code() -> None:
+    ladybird, honeybee, cranefly = (load_insect(name) for name in ("ladybird", "honeybee", "cranefly"))
+    trim = heave_trim([ladybird, honeybee, cranefly])
+    assert trim.stroke.frequency[0] / ladybird.stroke.frequency == pytest.approx(1.52, abs=0.005)  # A's box ends at 1.5
+    assert trim.gravity[1:] == pytest.approx([0.0064, 0.108], rel=0.01)
+
+
 def test_a_heavier_insect_beats_faster_as_the_root_of_its_weight() -> None:
     insect = load_insect("hoverfly")
     heavy = dataclasses.replace(insect, name="loaded", mass=1.44 * insect.mass)
