@@ -164,7 +164,12 @@ class Front:
 
 
 def fly_front(
-    insect: Insect | str, *, ratios: Sequence[float] = RATIOS, episodes: int = EPISODES, seed: int = 0
+    insect: Insect | str,
+    *,
+    ratios: Sequence[float] = RATIOS,
+    episodes: int = EPISODES,
+    seed: int = 0,
+    gusts: GustModel | None = None,
 ) -> Front:
     """Design and fly a controller for every ratio.
 
@@ -173,10 +178,14 @@ def fly_front(
         ratios: weights of the input over that of (z/R)².
         episodes: of each controller; the same gusts for all.
         seed: of the episodes.
+        gusts: flown through, and expected by the filter; the environment's own where None.
     """
     insect = as_insect(insect)
     flown = [
-        tuple(fly(make(insect, ratio), episodes=episodes, seed=seed, insect=insect) for ratio in ratios)
+        tuple(
+            fly(make(insect, ratio, gusts), episodes=episodes, seed=seed, insect=insect, gusts=gusts)
+            for ratio in ratios
+        )
         for make in (lqg, proportional_derivative)
     ]
     return Front(insect=insect.name, ratios=tuple(ratios), lqg=flown[0], pd=flown[1])

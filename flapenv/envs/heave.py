@@ -283,6 +283,15 @@ def _as_gusts(value: GustModel | Mapping[str, float] | None) -> GustModel:
             ("10", f"log(g/(f U)/{TYPICAL_GRAVITY:g}), how fast the body answers within a beat"),
         ],
     ),
+    rewards=f"""-(P*/P*_hover - 1) - {HEIGHT_COST:g} (z/R)², z at the end of the beat; `info["reward/power"]` and
+`info["reward/height"]`. A beat costs at most {WORST_BEAT:g}, more than the most wasteful stroke at the edge of the band. A row that is lost is
+charged that for every beat left, `info["reward/lost"]`: an early end never pays, whatever the other beats would have
+cost.""",
+    starts=f"""An insect drawn uniformly, z in ±{START_HEIGHT:g} R, w in ±{START_VELOCITY:g} U, a gust from its
+stationary distribution; or `options={{"insect": name, "height": z/R, "velocity": w/U}}`, each of them one value or one
+for each row.""",
+    ends=f"""Lost, and terminated, at |z| > {HEIGHT_LIMIT:g} R or |w| > {VELOCITY_LIMIT:g} U; truncated after `beats`
+beats by the environment itself, without a wrapper.""",
 )
 class HeaveEnv(SingleEnv):
     """One step is one wingbeat: choose its kinematics; hold height in vertical gusts with the least power.
@@ -310,16 +319,13 @@ class HeaveEnv(SingleEnv):
     {observations}
 
     ## Rewards
-    -(P*/P*_hover - 1) - 0.5 (z/R)² with z at the end of the beat, `info["reward/power"]` and `info["reward/height"]`;
-    no beat is charged more than the worst beat's 25. A row that is lost is charged that for every beat left,
-    `info["reward/lost"]`, so that an early end never pays, whatever the other beats would have cost.
+    {rewards}
 
     ## Starting state
-    An insect drawn uniformly, z in ±1 R, w in ±0.02 U, a gust from its stationary distribution. Or
-    `options={"insect": name, "height": z/R, "velocity": w/U}`, each of them one value or one for each row.
+    {starts}
 
     ## Episode end
-    Terminates at |z| > 5 R or |w| > 0.5 U; truncates after 200 beats, by itself, without a wrapper.
+    {ends}
 
     ## Arguments
     `insect`, `beats`, `gusts`, `dtype`, `render_mode` as in `HeaveVectorEnv`.
