@@ -1,7 +1,6 @@
 """flapenv/Heave-v0: one step is one wingbeat; hold height in gusts with the least power."""
 
 from collections.abc import Mapping
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from flapenv.envs.describe import action_table, described, markdown_table, strok
 from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
 from flapenv.envs.single import SingleEnv
 from flapenv.heave.dynamics import HeaveBeat, HeaveDynamics
-from flapenv.heave.gusts import EpisodeStreams, GustModel
+from flapenv.heave.gusts import EpisodeStreams, GustModel, Place, as_gusts
 from flapenv.heave.trim import BOX
 
 OBSERVATION_LIMIT = 5.0
@@ -77,7 +76,7 @@ class HeaveVectorEnv(BatchEnv):
         """
         refuse_unknown(unknown, type(self))
         self.beats = require_count("beats", beats)
-        self.gusts = _as_gusts(gusts)
+        self.gusts = as_gusts(gusts)
         self.dtype = np.dtype(require_name("dtype", getattr(dtype, "__name__", str(dtype)), ("float32", "float64")))
         self.insects = listed_insects(insect)
         self.dynamics = HeaveDynamics(self.insects, self.dtype)
@@ -247,28 +246,6 @@ class HeaveVectorEnv(BatchEnv):
         return heave_image(self.insects[insect], stroke, path, beats=self.beats, limit=HEIGHT_LIMIT)
 
 
-class Place(IntEnum):
-    """Where in an episode's stream of random numbers each thing is drawn; a normal number takes two places."""
-
-    INSECT = 0
-    HEIGHT = 1
-    VELOCITY = 2
-    FIRST_GUST = 3
-    LATER_GUSTS = 5
-    PER_GUST = 2
-
-
-def _as_gusts(value: GustModel | Mapping[str, float] | None) -> GustModel:
-    """A `GustModel` from itself, the dict of its fields, or None for the default."""
-    if value is None:
-        return GustModel()
-    if isinstance(value, Mapping):
-        return GustModel(**value)
-    if isinstance(value, GustModel):
-        return value
-    raise TypeError(f"gusts = {value!r} are not allowed; allowed: a GustModel, a dict of its fields, or None")
-
-
 @described(
     actions=action_table(stroke_rows(BOX, StrokeCoordinates(BOX).axis_names)),
     observations=markdown_table(
@@ -284,9 +261,9 @@ def _as_gusts(value: GustModel | Mapping[str, float] | None) -> GustModel:
         ],
     ),
     rewards=f"""-(P*/P*_hover - 1) - {HEIGHT_COST:g} (z/R)², z at the end of the beat; `info["reward/power"]` and
-`info["reward/height"]`. A beat costs at most {WORST_BEAT:g}, more than the most wasteful stroke at the edge of the band. A row that is lost is
-charged that for every beat left, `info["reward/lost"]`: an early end never pays, whatever the other beats would have
-cost.""",
+`info["reward/height"]`. A beat costs at most {WORST_BEAT:g}, more than the most wasteful stroke at the band's edge. A
+row that is lost is charged that for every beat left, `info["reward/lost"]`: an early end never pays, whatever the other
+beats would have cost.""",
     starts=f"""An insect drawn uniformly, z in ±{START_HEIGHT:g} R, w in ±{START_VELOCITY:g} U, a gust from its
 stationary distribution; or `options={{"insect": name, "height": z/R, "velocity": w/U}}`, each of them one value or one
 for each row.""",

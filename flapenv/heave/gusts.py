@@ -8,6 +8,8 @@ shifts it, so that two policies meet the same gusts.
 """
 
 import math
+from collections.abc import Mapping
+from enum import IntEnum
 
 import numpy as np
 
@@ -55,6 +57,32 @@ class GustModel:
         """Gusts of the beats after those with `gust`."""
         after = self.persistence * gust + self.innovation * normal
         return np.clip(after, -LARGEST_GUST * self.strength, LARGEST_GUST * self.strength)
+
+
+def as_gusts(value: GustModel | Mapping[str, float] | None) -> GustModel:
+    """A `GustModel` from itself, the dict of its fields, or None for the default.
+
+    Raises:
+        TypeError: for anything else.
+    """
+    if value is None:
+        return GustModel()
+    if isinstance(value, Mapping):
+        return GustModel(**value)
+    if isinstance(value, GustModel):
+        return value
+    raise TypeError(f"gusts = {value!r} are not allowed; allowed: a GustModel, a dict of its fields, or None")
+
+
+class Place(IntEnum):
+    """Where in an episode's stream of random numbers each thing is drawn; a normal number takes two places."""
+
+    INSECT = 0
+    HEIGHT = 1
+    VELOCITY = 2
+    FIRST_GUST = 3
+    LATER_GUSTS = 5
+    PER_GUST = 2
 
 
 class EpisodeStreams:

@@ -9,7 +9,8 @@ import pytest
 
 from agents import lqg as module
 from agents.heave_flights import Flights, compare_with_front, fly
-from agents.lqg import Lqg, design, fly_front, lqg, main, proportional_derivative
+from agents.lqg import fly_front, main
+from agents.lqg_controller import Lqg, design, lqg, proportional_derivative
 from flapenv.envs.heave import HeaveVectorEnv
 
 EPISODES = 48
