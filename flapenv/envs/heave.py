@@ -150,7 +150,7 @@ class HeaveVectorEnv(BatchEnv):
         left = self.beats - self._beat_number
         terms = self._terms(beat, np.where(lost, left, 0))
         rewards = np.maximum(terms["reward/power"] + terms["reward/height"], -WORST_BEAT) + terms["reward/lost"]
-        self._gust = np.where(mask, self._gust_of_the_next_beat(), gust)
+        self._gust = self._gust_of_the_next_beat()
         self._record(before, mask)
         return rewards, lost, (left == 0) & ~lost, self._info(beat, gust, terms, strokes, clipped)
 

@@ -46,6 +46,9 @@ def test_it_holds_height_where_the_open_loop_is_lost() -> None:
     assert np.all(flown.beats == 200)
     assert flown.rms_height < 0.1
     assert left.lost.mean() > 0.5
+    assert np.all((left.beats < 200) == left.lost)
+    assert np.all(left.returns <= -25 * (200 - left.beats))
+    assert np.all(left.returns[left.lost] > -25 * 200)
     assert np.mean(flown.returns) > -2 > np.mean(left.returns)
 
 

@@ -129,6 +129,14 @@ def test_two_policies_of_one_seed_meet_the_same_gusts_whenever_the_others_end() 
         np.testing.assert_array_equal(held["gust_ratio"][:first_end, row], thrown["gust_ratio"][:first_end, row])
 
 
+def test_every_beat_brings_news_of_the_gust() -> None:
+    gusts = run(HeaveVectorEnv(4000), centred, 6)["gust_ratio"]
+    news = gusts[1:] - np.exp(-1 / 20) * gusts[:-1]
+    for one, other in ((0, 1), (1, 2), (3, 4)):
+        assert abs(np.corrcoef(news[one], news[other])[0, 1]) < 0.05
+    assert np.std(news, axis=1) == pytest.approx(np.full(5, 0.02 * np.sqrt(1 - np.exp(-0.1))), rel=0.05)
+
+
 def test_the_first_rows_of_a_larger_batch_fly_the_same_episodes() -> None:
     few, many = (run(HeaveVectorEnv(rows), centred, 30) for rows in (3, 7))
     np.testing.assert_array_equal(few["gust_ratio"], many["gust_ratio"][:, :3])
