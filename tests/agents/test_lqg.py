@@ -144,6 +144,17 @@ def test_unlike_flights_are_not_compared(front: module.Front) -> None:
         fly(hold_still, episodes=0)
 
 
+@pytest.mark.parametrize("insect", ["hawkmoth", "honeybee"])
+def test_the_page_has_what_the_controller_does(insect: str) -> None:
+    page = (Path(module.__file__).parents[1] / "docs" / "heave.md").read_text(encoding="utf-8")
+    (row,) = [line for line in page.splitlines() if line.startswith(f"| {insect} |")]
+    _, weight, height, power, *_ = [cell.strip() for cell in row.strip("|").split("|")]
+    ratio = min(module.RATIOS, key=lambda one: abs(one - float(weight)))
+    flown = fly(lqg(insect, ratio), insect=insect)
+    assert flown.rms_height == pytest.approx(float(height), rel=5e-3)
+    assert 100 * flown.mean_power_excess == pytest.approx(float(power.split()[0]), abs=5e-3)
+
+
 def test_the_command_prints_the_front_and_keeps_table_and_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
