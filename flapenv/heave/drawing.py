@@ -30,10 +30,12 @@ def draw_heave(insect: Insect, stroke: Stroke, path: np.ndarray, *, beats: int, 
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.6, 6.4), dpi=100, layout="constrained")
-    grid = figure.add_gridspec(2, 2, height_ratios=(1, 1), width_ratios=(1.4, 1))
+    grid = figure.add_gridspec(2, 2, width_ratios=(2.2, 1))
     figure.suptitle(f"{insect.name}, beat {len(path) - 1} of {beats}\n{stroke_text(stroke)}", fontsize=11)
     _draw_path(figure.add_subplot(grid[0, :]), path, beats, limit)
-    draw_wing_sections(figure.add_subplot(grid[1, 0]), insect, stroke)
+    sections = figure.add_subplot(grid[1, 0])
+    draw_wing_sections(sections, insect, stroke)
+    sections.set_ylim(-2.2, 2.2)  # room for the words above wings of high aspect ratio
     axes = figure.add_subplot(grid[1, 1])
     phase = np.linspace(0, 2 * np.pi, 361)
     axes.plot(phase / (2 * np.pi), np.degrees(stroke.flap_angle(phase)), color=BLUE, label="φ flap")
@@ -49,9 +51,7 @@ def _draw_path(axes: "Axes", path: np.ndarray, beats: int, limit: float) -> None
     axes.axhspan(-limit, limit, color=BLUE, alpha=0.06, lw=0)
     for edge in (-limit, limit):
         axes.axhline(edge, color=RED, lw=1, ls="--")
-    axes.annotate(
-        f"lost beyond ±{limit:g} R", (0.01, limit), (0, -14), textcoords="offset points", color=RED, fontsize=9
-    )
+    axes.annotate(f"lost beyond ±{limit:g} R", (0, limit), (6, -14), textcoords="offset points", color=RED, fontsize=9)
     axes.axhline(0, color=GREY, lw=0.8)
     axes.plot(np.arange(len(path)), path, color=BLUE)
     axes.plot(len(path) - 1, path[-1], "o", color=BLUE, clip_on=False)
