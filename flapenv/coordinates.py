@@ -152,7 +152,8 @@ class Axis:
         self.start, self.span = low, high - low
         if scale != "linear" and low < high:
             self.start = math.log(first + self.shift)
-            self.span = math.log(last + self.shift) - self.start
+            self.span = float(np.log((last + self.shift) / (first + self.shift)))
+        self._first = first + self.shift
 
     def value(self, fraction: Any, xp: Any) -> Any:
         """The value a fraction of the way; arrays or tensors of the library `xp`."""
@@ -166,4 +167,4 @@ class Axis:
         if self.scale == "linear":
             return (value - self.start) / self.span
         run = 1 - value if self.scale == "log-complement" else value
-        return (np.log(run + self.shift) - self.start) / self.span
+        return np.log((run + self.shift) / self._first) / self.span  # exactly 1 at the far bound

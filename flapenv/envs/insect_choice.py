@@ -4,7 +4,9 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from flapenv.aero.checks import require_name
+import numpy as np
+
+from flapenv.aero.checks import is_single, require_name
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.optimum import optimum
 from flapenv.problem import HoverProblem
@@ -19,6 +21,35 @@ LEAST_WEIGHT_SUPPORT = 1.05
 """Λ_max of a random wing at least, where its frequency is fixed and many could not hover."""
 
 
+def listed_insects(choice: InsectChoice, *, others: tuple[str, ...] = ()) -> tuple[Insect, ...]:
+    """The insects that a choice means, each name once.
+
+    Args:
+        choice: "all", a name of `INSECTS`, an `Insect` or the dict of one, or several of these.
+        others: words that may stand in the place of a name, for the message about one that may not.
+
+    Raises:
+        TypeError: for a choice of another kind, or an insect with array fields.
+        ValueError: for an unknown name, no insect at all, or two of one name.
+    """
+    if isinstance(choice, str):
+        require_name("insect", choice, ("all", *others, *INSECTS))
+        insects = tuple(load_insect(name) for name in (INSECTS if choice == "all" else (choice,)))
+    elif isinstance(choice, Sequence):
+        insects = tuple(as_insect(one) for one in choice)
+    else:
+        insects = (as_insect(choice),)
+    if not insects:
+        raise ValueError("insect = [] is not allowed; allowed: at least one insect")
+    names = [one.name for one in insects]
+    for one in insects:
+        if not is_single(one):
+            raise TypeError(f"insect {one.name!r} has array fields; allowed: insects with scalar fields")
+        if names.count(one.name) > 1:
+            raise ValueError(f"insect holds {names.count(one.name)} called {one.name!r}; allowed: each name once")
+    return insects
+
+
 def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infeasible: bool) -> tuple[Insect, ...]:
     """The insects an environment draws from, with a warning about every one that cannot hover in the box.
 
@@ -31,21 +62,8 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
         TypeError: for a choice of another kind.
         ValueError: for an unknown name, no insect at all, or "all" where none is feasible.
     """
-    if isinstance(choice, str):
-        require_name("insect", choice, ("all", RANDOM_WING, *INSECTS))
-    everyone = choice == "all"
-    if everyone:
-        insects = tuple(load_insect(name) for name in INSECTS)
-    elif isinstance(choice, Sequence) and not isinstance(choice, str):
-        insects = tuple(as_insect(one) for one in choice)
-    else:
-        insects = (as_insect(choice),)
-    if not insects:
-        raise ValueError("insect = [] is not allowed; allowed: at least one insect")
-    names = [one.name for one in insects]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"insect holds {names.count(name)} called {name!r}; allowed: each name once")
+    insects = listed_insects(choice, others=(RANDOM_WING,))
+    everyone = isinstance(choice, str) and choice == "all"
     infeasible = {insect.name: optimum(insect, problem) for insect in insects}
     infeasible = {name: best for name, best in infeasible.items() if not best.feasible}
     if infeasible:
@@ -71,3 +89,24 @@ def choose_pool(problem: HoverProblem, *, size: int, seed: int, split: Split, le
         min_weight_support=LEAST_WEIGHT_SUPPORT if fixed else None,
         problem=problem,
     )
+
+
+def chosen_rows(chosen: Any, names: Sequence[str], rows: int) -> np.ndarray:
+    """Numbers of the insects that the reset option "insect" asks for, shape (rows,).
+
+    Args:
+        chosen: a name, or one for each row.
+        names: of the environment's insects, in order.
+        rows: of the batch.
+
+    Raises:
+        TypeError: for anything but names.
+        ValueError: for an unknown name or another number of them.
+    """
+    if not isinstance(chosen, str | list | tuple | np.ndarray):
+        raise TypeError(f"reset option insect = {chosen!r} is not allowed; allowed: a name, or one for each row")
+    wanted = [chosen] * rows if isinstance(chosen, str) else list(chosen)
+    if len(wanted) != rows:
+        raise ValueError(f"reset option insect has {len(wanted)} names; allowed: one, or one for each row")
+    own = list(names)
+    return np.array([own.index(require_name("reset option insect", name, own)) for name in wanted], dtype=np.intp)

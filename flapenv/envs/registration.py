@@ -4,6 +4,7 @@ import gymnasium as gym
 
 _ENTRY_POINTS = {
     "flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover_batch:HoverVectorEnv"),
+    "flapenv/Heave-v0": ("flapenv.envs.heave:HeaveEnv", "flapenv.envs.heave:HeaveVectorEnv"),
 }
 ENV_IDS: tuple[str, ...] = tuple(_ENTRY_POINTS)
 
