@@ -142,9 +142,7 @@ class ConditionTable:
             condition: fields of shape (n,) or scalars.
         """
         own = self.nominal.rows(index)
-        payload, density, lost = (
-            np.broadcast_to(as_numpy(value), index.shape) for value in vars(condition).values()
-        )
+        payload, density, lost = (np.broadcast_to(as_numpy(value), index.shape) for value in vars(condition).values())
         area, second, third, uneven = self.cut(index, lost)
         kept, load = 1 - lost, density / payload
         aspect_ratio = own.aspect_ratio * kept**2 / area

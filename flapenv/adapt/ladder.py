@@ -111,7 +111,7 @@ class LiftLadder:
 
 
 def amplitude_growth(case: HoverCase, model: HoverModel) -> np.ndarray:
-    """b = k_ind k_tip a/(π AR E), so that C_T ∝ 1/(1 + b √(90°/φmax)) [-]  (2.9), (2.10)."""
+    """B = k_ind k_tip a/(π AR E), so that C_T ∝ 1/(1 + b √(90°/φmax)) [-]  (2.9), (2.10)."""
     return np.asarray(
         case.wing_factor * model.section_lift_slope / (math.pi * case.aspect_ratio * case.edge_correction)
     )

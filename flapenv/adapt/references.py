@@ -8,7 +8,7 @@ All of them beat waveforms whose averages L and S are known beforehand, so that 
   wing's optimum for every load: first by φmax, then by the waveform.
 """
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -52,10 +52,7 @@ def beats_of(actions: np.ndarray) -> Beats:
 
 
 class Controller(Protocol):
-    """Something that beats in every row and may listen to what it felt."""
-
-    def begin(self, mask: np.ndarray) -> None:
-        """Start again in the rows of the mask."""
+    """Something that beats in every row and may listen to what it felt; made at the beginning of an episode."""
 
     def beats(self) -> Beats:
         """The strokes of the next beat."""
@@ -63,16 +60,16 @@ class Controller(Protocol):
     def feel(self, weight_support: np.ndarray, mask: np.ndarray) -> None:
         """Take in the felt weight support of the last beat in the rows of the mask."""
 
+    def carry(self, mask: np.ndarray, before: Any) -> None:
+        """Go on where another of the same kind stands, in the rows of the mask."""
+
 
 class FixedStroke:
     """The same stroke on every beat."""
 
     def __init__(self, beats: Beats) -> None:
-        """Take the strokes, shape (n,)."""
+        """Take the strokes, of every row (n,) or of all."""
         self._beats = beats
-
-    def begin(self, mask: np.ndarray) -> None:
-        """Nothing to remember."""
 
     def beats(self) -> Beats:
         """The stroke."""
@@ -80,6 +77,9 @@ class FixedStroke:
 
     def feel(self, weight_support: np.ndarray, mask: np.ndarray) -> None:
         """Nothing to learn."""
+
+    def carry(self, mask: np.ndarray, before: Any) -> None:
+        """Nothing to remember."""
 
 
 class FeltLift:
@@ -89,10 +89,6 @@ class FeltLift:
         """Take the first stroke, κ and the margin, of every row (n,) or of all."""
         self._first, self._gain, self._margin = beats, gain, margin
         self._amplitude = np.array(beats.amplitude)
-
-    def begin(self, mask: np.ndarray) -> None:
-        """Back to the first stroke."""
-        self._amplitude = np.where(mask, self._first.amplitude, self._amplitude)
 
     def beats(self) -> Beats:
         """The waveform at the present φmax."""
@@ -104,20 +100,20 @@ class FeltLift:
         low, high = BOX.bounds("flap_amplitude", StrokeReference(1.0, 1.0))
         self._amplitude = np.where(mask, np.clip(wanted, low, high), self._amplitude)
 
+    def carry(self, mask: np.ndarray, before: "FeltLift") -> None:
+        """Take over φmax."""
+        self._amplitude = np.where(mask, before._amplitude, self._amplitude)
+
 
 class LadderClimber:
     """h ← h Λ̂^(-κ) (1 + margin), within the ladder; h is the weight support that the nominal wing would have."""
 
     def __init__(self, task: AdaptTask, index: np.ndarray, height: Real, gain: Real, margin: Real) -> None:
         """Take the insect of every row (n,), and the first place, κ and the margin, of every row or of all."""
-        self._task, self._first, self._gain, self._margin = task, height, gain, margin
+        self._task, self._gain, self._margin = task, gain, margin
         self._height = np.array(height)
-        self._nominal: HoverCase = self._task.cases(index, NOMINAL)
-        self._full = self._task.ladder.full_lift(self._nominal, self._task.model)
-
-    def begin(self, mask: np.ndarray) -> None:
-        """Back to the first place."""
-        self._height = np.where(mask, self._first, self._height)
+        self._nominal: HoverCase = task.cases(index, NOMINAL)
+        self._full = task.ladder.full_lift(self._nominal, task.model)
 
     def beats(self) -> Beats:
         """The cheapest stroke of the place."""
@@ -129,6 +125,10 @@ class LadderClimber:
         wanted = self._height * weight_support**-self._gain * (1 + self._margin)
         top = self._full * self._task.ladder.largest_lift
         self._height = np.where(mask, np.minimum(wanted, top), self._height)
+
+    def carry(self, mask: np.ndarray, before: "LadderClimber") -> None:
+        """Take over the place."""
+        self._height = np.where(mask, before._height, self._height)
 
 
 def beat_reward(task: AdaptTask, flight: Flight, beats: Beats) -> tuple[np.ndarray, np.ndarray]:
@@ -173,13 +173,12 @@ def fly(task: AdaptTask, controller: Controller, given: Trials) -> np.ndarray:
 
     Args:
         task: the insects.
-        controller: for as many rows; it is begun here.
+        controller: for as many rows, at its beginning.
         given: the draws.
     """
     everyone = np.ones(len(given.index), dtype=bool)
     before, after = given.flights
     total = np.zeros(len(given.index))
-    controller.begin(everyone)
     for beat in range(BEATS):
         flight = choose(beat < given.draws.change_beat, before, after)
         reward, weight_support = beat_reward(task, flight, controller.beats())

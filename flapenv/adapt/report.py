@@ -63,16 +63,11 @@ def blind_loss(task: AdaptTask, height: float, given: Trials) -> np.ndarray:
     """
     before, after = given.flights
     climber = LadderClimber(task, given.index, height, 0.0, 0.0)
-    climber.begin(np.ones(len(given.index), dtype=bool))
-    first = _lost(task, before, *_loads(task, climber))
+    blind = climber.beats()
+    first = _lost(task, before, blind.amplitude, blind.lift, blind.power)
     rung = task.ladder.rung(before.case, task.model, 1 / task.ladder.full_lift(before.case, task.model))
     change = _lost(task, after, rung.flap_amplitude, rung.lift, rung.power)
     return first + np.where(given.draws.change_beat < BEATS, change, 0.0)
-
-
-def _loads(task: AdaptTask, climber: LadderClimber) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    beats = climber.beats()
-    return beats.amplitude, beats.lift, beats.power
 
 
 def _lost(task: AdaptTask, flight: Flight, *stroke: np.ndarray) -> np.ndarray:

@@ -4,6 +4,8 @@ import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from flapenv.aero.checks import require_name
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.optimum import optimum
@@ -71,3 +73,24 @@ def choose_pool(problem: HoverProblem, *, size: int, seed: int, split: Split, le
         min_weight_support=LEAST_WEIGHT_SUPPORT if fixed else None,
         problem=problem,
     )
+
+
+def chosen_rows(chosen: Any, names: Sequence[str], rows: int) -> np.ndarray:
+    """Numbers of the insects that the reset option "insect" asks for, shape (rows,).
+
+    Args:
+        chosen: a name, or one for each row.
+        names: of the environment's insects, in order.
+        rows: of the batch.
+
+    Raises:
+        TypeError: for anything but names.
+        ValueError: for an unknown name or another number of them.
+    """
+    if not isinstance(chosen, str | list | tuple | np.ndarray):
+        raise TypeError(f"reset option insect = {chosen!r} is not allowed; allowed: a name, or one for each row")
+    wanted = [chosen] * rows if isinstance(chosen, str) else list(chosen)
+    if len(wanted) != rows:
+        raise ValueError(f"reset option insect has {len(wanted)} names; allowed: one, or one for each row")
+    own = list(names)
+    return np.array([own.index(require_name("reset option insect", name, own)) for name in wanted], dtype=np.intp)

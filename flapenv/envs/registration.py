@@ -2,7 +2,13 @@
 
 import gymnasium as gym
 
-_ENTRY_POINTS = {"flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover:HoverVectorEnv")}
+_ENTRY_POINTS = {
+    "flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover:HoverVectorEnv"),
+    "flapenv/HoverAdapt-v0": (
+        "flapenv.envs.hover_adapt:HoverAdaptEnv",
+        "flapenv.envs.hover_adapt:HoverAdaptVectorEnv",
+    ),
+}
 ENV_IDS: tuple[str, ...] = tuple(_ENTRY_POINTS)
 
 
