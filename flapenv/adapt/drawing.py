@@ -1,11 +1,11 @@
 """A picture of a flight in hidden conditions: its last wingbeat, and how the beats before it went."""
 
 import dataclasses
+import warnings
 
 import numpy as np
 
 from flapenv.adapt.conditions import Condition, flown
-from flapenv.adapt.task import BEATS
 from flapenv.aero.stroke import Stroke
 from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, figure_image, require_matplotlib, wingbeat_image
 from flapenv.insects import Insect
@@ -13,7 +13,7 @@ from flapenv.model import HoverModel
 
 
 def flight_image(
-    insect: Insect, stroke: Stroke, condition: Condition, model: HoverModel, trace: np.ndarray
+    insect: Insect, stroke: Stroke, condition: Condition, model: HoverModel, trace: np.ndarray, horizon: int
 ) -> np.ndarray:
     """The last wingbeat as it was flown, above weight support and reward of the episode so far.
 
@@ -23,6 +23,7 @@ def flight_image(
         condition: of the last beat, scalar fields.
         model: the air that the insect is known in.
         trace: of every beat the weight support, true and felt, the reward, and that of the optimum; shape (4, beats).
+        horizon: beats of the whole episode.
 
     Returns:
         A picture (height, width, 3) of uint8, of the same size whatever it shows.
@@ -35,10 +36,12 @@ def flight_image(
 
     changed, air = flown(insect, condition, model)
     name = (
-        f"{insect.name}, beat {trace.shape[1]} of {BEATS}, carrying {100 * (condition.payload - 1):.0f} %, air "
+        f"{insect.name}, beat {trace.shape[1]} of {horizon}, carrying {100 * (condition.payload - 1):.0f} %, air "
         f"{condition.density_ratio:.2f}, {100 * condition.span_lost:.0f} % of the span lost"
     )
-    top = wingbeat_image(dataclasses.replace(changed, name=name), stroke, air)
+    with warnings.catch_warnings():  # a short wing's aspect ratio is part of the task, docs/hover_adapt.md says so
+        warnings.simplefilter("ignore", UserWarning)
+        top = wingbeat_image(dataclasses.replace(changed, name=name), stroke, air)
     figure = Figure(figsize=(9.6, 2.4), dpi=100, layout="constrained")
     left, right = figure.subplots(1, 2)
     beats = np.arange(1, trace.shape[1] + 1)
@@ -53,7 +56,7 @@ def flight_image(
     right.set(ylabel="reward", ylim=_limits(np.concatenate([reward, best, [-1.0]]), 0.5))
     right.legend(fontsize=8, loc="upper right", frameon=False, ncols=2)
     for axes in (left, right):
-        axes.set(xlabel="beat", xlim=(0.5, BEATS + 0.5), xticks=range(0, BEATS + 1, 5))
+        axes.set(xlabel="beat", xlim=(0.5, horizon + 0.5), xticks=range(0, horizon + 1, 5))
     return np.concatenate([top, figure_image(figure)])
 
 

@@ -5,8 +5,8 @@ a fixed frequency v̄ = 4 f φmax. At Λ = 1
 
     P* = 2 A_P C_T v̄³ S = 2 A_P C_T^(-1/2) A_L^(-3/2) S/L^(3/2),    A_L C_T v̄² L = 1,
 
-with A_L and A_P free of C_T here. C_T grows with φmax. The least S/L^1.5 of the box belongs to one waveform, the corner;
-along the curve of the least S for a given L it rises from there on. So the optimum is
+with A_L and A_P free of C_T here. C_T grows with φmax. The least S/L^1.5 of the box belongs to one waveform, the
+corner; along the curve of the least S for a given L it rises from there on. So the optimum is
 
 - the corner, with the φmax that carries the weight, while that is not above the largest φmax;
 - else the largest φmax, with the waveform of the least S that gives the lift still missing.

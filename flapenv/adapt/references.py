@@ -47,7 +47,7 @@ def beats_of(actions: np.ndarray) -> Beats:
     values, _ = COORDINATES.decode(np.asarray(actions, dtype=float), StrokeReference(1.0, 1.0))
     del values["frequency"]
     amplitude = values.pop("flap_amplitude")
-    lift, power = speed_averages(**values, nodes=BOX.time_nodes(tolerance=QUADRATURE_TOLERANCE))
+    lift, power = speed_averages(**values, rule=BOX.time_rule(tolerance=QUADRATURE_TOLERANCE))
     return Beats(amplitude=np.asarray(amplitude), lift=np.asarray(lift), power=np.asarray(power))
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -202,7 +203,7 @@ def shipped(insect: Insect) -> Tuned | None:
     row = shipped_rows().get(insect.name)
     if row is None or insect != load_insect(insect.name):
         return None
-    values = {
+    values: dict[str, Any] = {
         field: tuple(float(row[f"{field}/{axis}"]) for axis in COORDINATES.names)
         if field.endswith("action")
         else float(row[field])

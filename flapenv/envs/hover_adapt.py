@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
-from flapenv.adapt.conditions import Condition
+from flapenv.adapt.conditions import NOMINAL, Condition
 from flapenv.adapt.ladder import BOX
 from flapenv.adapt.references import (
     COORDINATES,
@@ -21,12 +21,12 @@ from flapenv.adapt.references import (
 )
 from flapenv.adapt.task import BEATS, LEAST_MARGIN, NOISE, AdaptTask, Draws, Flight, choose
 from flapenv.adapt.tuning import NAMES, Tuned, shipped, tuned_for
-from flapenv.aero.checks import require_flag, require_name
+from flapenv.aero.checks import require_count, require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
-from flapenv.envs.batch import BatchEnv, Info, refuse_unknown
+from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import action_table, described, stroke_rows
-from flapenv.envs.insect_choice import InsectChoice, choose_insects, insect_numbers
+from flapenv.envs.insect_choice import InsectChoice, choose_insects, chosen_rows
 from flapenv.envs.single import SingleEnv
 from flapenv.objective import LEAST_GAP_WEIGHT, QUADRATURE_TOLERANCE
 from flapenv.performance import hover_averages, yardstick
@@ -58,6 +58,20 @@ class HoverAdaptVectorEnv(BatchEnv):
     """
 
     reset_options = ("insect", "condition")
+    info_keys = (
+        "insect",
+        "beat",
+        *(f"condition/{name}" for name in vars(NOMINAL)),
+        "weight_support",
+        "specific_power",
+        "lift_deficit",
+        "reward/power",
+        "reward/lift",
+        *(f"stroke/{name}" for name in STROKE_PARAMETERS),
+        "clipped",
+        "optimality_gap",
+        *RETURN_KEYS,
+    )
 
     def __init__(
         self,
@@ -66,6 +80,8 @@ class HoverAdaptVectorEnv(BatchEnv):
         insect: InsectChoice = "all",
         references: bool = True,
         tune_references: bool = False,
+        beats: int = BEATS,
+        infos: InfoChoice = "all",
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         dtype: Any = "float32",
         render_mode: str | None = None,
@@ -80,6 +96,8 @@ class HoverAdaptVectorEnv(BatchEnv):
                 are missing from the infos and a step costs less.
             tune_references: whether insects without shipped references get theirs now, some ten seconds each, once
                 per process; else only the optimum with full knowledge stands beside them.
+            beats: of an episode; the references are tuned for the default.
+            infos: "all", "none", or the keys wanted.
             autoreset_mode: an `AutoresetMode` or its name.
             dtype: "float32" or "float64", of the computation; observations and actions are float32 always.
             render_mode: "rgb_array" or None.
@@ -99,7 +117,7 @@ class HoverAdaptVectorEnv(BatchEnv):
         self._is_tuned = np.array([references and one is not None for one in tuned])
         self._tuned = _stacked([one or UNTUNED for one in tuned])
         self._tuned_beats = tuple(beats_of(self._tuned[name]) for name in ("fixed_action", "felt_action"))
-        self._nodes = BOX.time_nodes(tolerance=QUADRATURE_TOLERANCE)
+        self._rule = BOX.time_rule(tolerance=QUADRATURE_TOLERANCE)
 
         nominal = self.task.table.nominal
         weight_support, self._felt_power = yardstick(nominal, self.task.model)
@@ -116,23 +134,27 @@ class HoverAdaptVectorEnv(BatchEnv):
             single_action_space=spaces.Box(-1.0, 1.0, (axes,), np.float32),
             autoreset_mode=autoreset_mode,
             render_mode=render_mode,
+            infos=infos,
         )
+        self.beats = require_count("beats", beats)
         self._insect = np.zeros(num_envs, dtype=np.intp)
         self._flown = np.zeros(num_envs, dtype=np.intp)
         """Beats of the present episode."""
         self._draws = Draws(
-            before=_rows(Condition(), num_envs), after=_rows(Condition(), num_envs), change_beat=self._flown + BEATS
+            before=_rows(Condition(), num_envs),
+            after=_rows(Condition(), num_envs),
+            change_beat=self._flown + self.beats,
         )
         self._begin_flights()
         self._memory = np.zeros((num_envs, MEMORY, 2 + axes), dtype=np.float32)  # the last beat first
         self._returns = {key: np.zeros(num_envs) for key in RETURN_KEYS}
         self._controllers: dict[str, Controller] = {}
-        self._last = _LastBeat(num_envs)
+        self._last = _LastBeat(num_envs, self.beats)
 
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
         insect = self.np_random.integers(len(self.insects), size=self.num_envs)
         if options.get("insect") is not None:
-            insect = insect_numbers(options["insect"], list(self._names), self.num_envs)
+            insect = chosen_rows(options["insect"], [one.name for one in self.insects], self.num_envs)
         draws = self.task.draw(self.np_random, insect)
         if options.get("condition") is not None:
             draws = self._given(insect, options["condition"])
@@ -161,7 +183,7 @@ class HoverAdaptVectorEnv(BatchEnv):
                 f"reset option condition = {condition!r} is not allowed: the largest weight support there is "
                 f"{largest:.3f}; allowed: conditions with {LEAST_MARGIN:g} or more"
             )
-        return Draws(before=rows, after=rows, change_beat=np.full(self.num_envs, BEATS))
+        return Draws(before=rows, after=rows, change_beat=np.full(self.num_envs, self.beats))
 
     def _begin_flights(self) -> None:
         """What the conditions of all rows amount to, and the present one of each."""
@@ -193,7 +215,7 @@ class HoverAdaptVectorEnv(BatchEnv):
             self._set_now(choose(changing, self._after, self._now))
         flight, case = self._now_cast, self._now_cast.case
         strokes, clipped = self.coordinates.decode(actions.astype(self.dtype), case.reference)
-        weight_support, specific_power = hover_averages(case, self.task.model, **strokes, nodes=self._nodes)
+        weight_support, specific_power = hover_averages(case, self.task.model, **strokes, rule=self._rule)
         reward, power_term, lift_term = self.task.reward_terms(flight, weight_support, specific_power)
         noise = np.exp(NOISE * self.np_random.standard_normal((self.num_envs, 2)))
         felt = weight_support * noise[:, 0]
@@ -221,7 +243,7 @@ class HoverAdaptVectorEnv(BatchEnv):
             "optimality_gap": self._gap(weight_support, specific_power),
             **self._return_infos(),
         }
-        return reward, mask & (self._flown == BEATS), np.zeros(self.num_envs, dtype=bool), info
+        return reward, mask & (self._flown == self.beats), np.zeros(self.num_envs, dtype=bool), info
 
     def _condition(self) -> Condition:
         """The present condition of every row, fresh arrays."""
@@ -251,7 +273,7 @@ class HoverAdaptVectorEnv(BatchEnv):
         return infos
 
     def _observe(self) -> np.ndarray:
-        left = (1 - self._flown / BEATS).astype(np.float32)
+        left = (1 - self._flown / self.beats).astype(np.float32)
         memory = self._memory.reshape(self.num_envs, -1)
         seen = np.concatenate([self._features[self._insect], memory, left[:, None]], axis=1)
         return np.clip(seen, -OBSERVATION_LIMIT, OBSERVATION_LIMIT)
@@ -264,22 +286,24 @@ class HoverAdaptVectorEnv(BatchEnv):
         if just_begun or last.beats[row] == 0:
             insect = self.insects[self._insect[row]]
             condition = Condition(**{name: float(value[row]) for name, value in vars(self._condition()).items()})
-            return flight_image(insect, insect.stroke, condition, self.task.model, np.zeros((TRACES, 0)))
+            return flight_image(insect, insect.stroke, condition, self.task.model, np.zeros((TRACES, 0)), self.beats)
         insect = self.insects[last.insect[row]]
         stroke = Stroke(**{name: float(value[row]) for name, value in last.stroke.items()})
         condition = Condition(**{name: float(value[row]) for name, value in last.condition.items()})
-        return flight_image(insect, stroke, condition, self.task.model, last.trace[:, row, : last.beats[row]])
+        return flight_image(
+            insect, stroke, condition, self.task.model, last.trace[:, row, : last.beats[row]], self.beats
+        )
 
 
 class _LastBeat:
     """What a picture shows: the last beat of every row and its episode so far, beyond the episode's end."""
 
-    def __init__(self, rows: int) -> None:
+    def __init__(self, rows: int, beats: int) -> None:
         self.insect = np.zeros(rows, dtype=np.intp)
         self.beats = np.zeros(rows, dtype=np.intp)
         self.stroke = {name: np.zeros(rows) for name in STROKE_PARAMETERS}
         self.condition = {name: np.zeros(rows) for name in vars(Condition())}
-        self.trace = np.zeros((TRACES, rows, BEATS), dtype=np.float32)
+        self.trace = np.zeros((TRACES, rows, beats), dtype=np.float32)
 
     def keep(
         self,
@@ -345,24 +369,24 @@ class HoverAdaptEnv(SingleEnv):
     What is felt is what is times a noise whose logarithm is normal, with a standard deviation of 2 %.
 
     ## Rewards
-    Each beat -P*/P*_ref - λ max(0, 1 - Λ), not below -20, of the true Λ and of the true P* per kilogram carried. P*_ref is
-    the proven lower bound, and λ at least twice the multiplier of the optimum, both of the present condition, so
+    Each beat -P*/P*_ref - λ max(0, 1 - Λ), not below -20, of the true Λ and of the true P* per kilogram carried. P*_ref
+    is the proven lower bound, and λ at least twice the multiplier of the optimum, both of the present condition, so
     that the best stroke of a condition is the best one that carries the weight. Terms: `info["reward/power"]`,
     `info["reward/lift"]`. Infos sum up the returns since the episode began: `return` the agent's,
     `return/full_knowledge` the optimum's that knows every condition, `return/fixed_stroke`, `return/felt_lift` and
     `return/lift_ladder` those of the references on the same conditions with the same noise.
 
     ## Starting state
-    An insect drawn uniformly, or `options={"insect": name}`. Payload 1 to 1.25 times its mass, density 0.8 to 1.05 times
+    An insect drawn uniformly, or `options={"insect": name}`. Mass 1 to 1.25 times its own, density 0.8 to 1.05 times
     the model's, 0 to 15 % of the span lost at the tips; drawn until the box lifts at least 1.05 times the weight. After
     5 to 15 beats the payload becomes another or more of the span is lost. `options={"condition": {"payload": 1.1}}`
     sets a condition that stays; what it leaves out is nominal.
 
     ## Episode end
-    Terminates after 20 beats; never truncates.
+    Terminates after 20 beats, or as many as `beats` says; never truncates.
 
     ## Arguments
-    `insect`, `references`, `tune_references`, `dtype`, `render_mode` as in `HoverAdaptVectorEnv`.
+    `insect`, `references`, `tune_references`, `beats`, `infos`, `dtype`, `render_mode` as in `HoverAdaptVectorEnv`.
 
     ## Version history
     - v0: first version.
