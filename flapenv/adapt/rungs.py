@@ -15,16 +15,19 @@ SPREAD_STARTS = 12
 """From which the corner is sought."""
 
 
-def solve_rungs() -> np.ndarray:
-    """Points of the cube from the corner, the least S/L^1.5, to the largest lift, shape (RUNGS, 4).
+def solve_rungs(count: int = RUNGS) -> np.ndarray:
+    """Points of the cube from the corner, the least S/L^1.5, to the largest lift, shape (count, 4).
 
     Between them the least S with L >= s, s crowded towards both ends, where waveforms change most.
+
+    Args:
+        count: of the points.
     """
     shapes = shapes_of(BOX)
     starts = np.random.default_rng(0).uniform(-1, 1, (SPREAD_STARTS, len(shapes.coordinates)))
     corner = shapes.best("free", starts)
     low, high = float(shapes.numbers(corner[None])[0][0]), largest_lift(BOX)[1]
-    grid = low + (high - low) * (1 - np.cos(np.linspace(0, math.pi, RUNGS)[1:-1])) / 2
+    grid = low + (high - low) * (1 - np.cos(np.linspace(0, math.pi, count)[1:-1])) / 2
     return np.concatenate([corner[None], curve(BOX, "fixed", grid), largest_lift(BOX)[0][None]])
 
 

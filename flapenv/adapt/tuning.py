@@ -30,8 +30,8 @@ from flapenv.insects import INSECTS, Insect, load_insect
 REFERENCES_FILE = "adapt_references.csv"
 DRAWS = 1024
 """Episodes the references are tuned on, and as many held out."""
-SAMPLES, STARTS = 200, 4
-"""Points spread over the parameters, and how many of the best are refined."""
+SAMPLES, STARTS, EVALUATIONS = 200, 4, 400
+"""Points spread over the parameters, how many of the best are refined, and strokes for each of these."""
 NAMES = ("full_knowledge", "fixed_stroke", "felt_lift", "lift_ladder")
 """The references as tables and infos call them."""
 FIRST_HEIGHT, GAIN, MARGIN = (1.0, 1.9), (0.1, 1.2), (-0.02, 0.08)
@@ -131,7 +131,7 @@ def _least(cost: Callable[[np.ndarray], float], bounds: Iterable[tuple[float, fl
             (points[start] - low) / (high - low),
             method="Nelder-Mead",
             bounds=[(0.0, 1.0)] * len(low),
-            options={"xatol": 1e-5, "fatol": 1e-6, "maxfev": 400},
+            options={"xatol": 1e-5, "fatol": 1e-6, "maxfev": EVALUATIONS},
         )
         for start in np.argsort(costs)[:STARTS]
     ]
