@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from flapenv import INSECTS, Insect, Stroke, Wing, load_insect, optimum
+from flapenv import INSECTS, Insect, Stroke, Wing, WingFactors, load_insect, optimum
 from flapenv.adapt import NOMINAL, AdaptTask
 from flapenv.adapt.conditions import DENSITY_RATIO, PAYLOAD, SPAN_LOST
 from flapenv.adapt.task import BEATS, CHANGE, LEAST_MARGIN, choose
@@ -96,7 +96,8 @@ def test_an_insect_that_cannot_hover_in_problem_a_is_refused() -> None:
 def test_an_insect_that_barely_hovers_in_problem_a_still_has_conditions_to_draw_from(rng: np.random.Generator) -> None:
     wing = Wing(length=0.05, mean_chord=0.015, r1_hat=0.5)
     stroke = Stroke(frequency=20.0, flap_amplitude=1.0, pitch_amplitude=1.0)
-    light = Insect(name="light", mass=1e-3, wing=wing, stroke=stroke)
+    factors = WingFactors(k_ind=1.15, k_tip=1.1)  # whatever the mass
+    light = Insect(name="light", mass=1e-3, wing=wing, stroke=stroke, k_table=factors)
     barely = dataclasses.replace(light, name="barely", mass=1e-3 * optimum(light).max_weight_support / 1.02)
     assert 1 < optimum(barely).max_weight_support < 1.03
     task, index = AdaptTask((barely,)), np.zeros(ROWS, dtype=np.intp)
