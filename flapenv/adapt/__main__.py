@@ -3,9 +3,11 @@
 import argparse
 from pathlib import Path
 
-from flapenv.adapt.report import blind_text, references_table
+from flapenv.adapt.drawing import references_figure
+from flapenv.adapt.report import report
 from flapenv.adapt.rungs import write_rungs
 from flapenv.adapt.tuning import write_references
+from flapenv.insects import INSECTS
 
 
 def main() -> None:
@@ -22,6 +24,12 @@ def main() -> None:
     parser.add_argument(
         "--rungs", action="store_true", help="with --out, first solve the lift ladder too (about ten seconds)"
     )
+    parser.add_argument(
+        "--picture",
+        type=Path,
+        metavar="FILE",
+        help="draw the references over an episode into a PNG (needs matplotlib)",
+    )
     arguments = parser.parse_args()
     if arguments.rungs and arguments.out is None:
         parser.error("--rungs needs --out FOLDER")
@@ -30,9 +38,11 @@ def main() -> None:
             print(f"wrote {write_rungs(arguments.out)}")
         print(f"wrote {write_references(arguments.out)}")
         return
-    print(references_table())
-    print()
-    print(blind_text())
+    if arguments.picture is not None:
+        references_figure(INSECTS[0]).savefig(arguments.picture)
+        print(f"wrote {arguments.picture}")
+        return
+    print(report())
 
 
 if __name__ == "__main__":

@@ -1,15 +1,25 @@
-"""A picture of a flight in hidden conditions: its last wingbeat, and how the beats before it went."""
+"""Pictures of flights in hidden conditions: the last wingbeat with the beats before it, and the references."""
 
 import dataclasses
 import warnings
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from flapenv.adapt.conditions import Condition, flown
+from flapenv.adapt.references import fly_beats
+from flapenv.adapt.task import BEATS, AdaptTask
+from flapenv.adapt.tuning import NAMES, controllers, draws_of, tuned_for
 from flapenv.aero.stroke import Stroke
 from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, figure_image, require_matplotlib, wingbeat_image
-from flapenv.insects import Insect
+from flapenv.insects import Insect, load_insect
 from flapenv.model import HoverModel
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+EPISODE = 408
+"""A held-out episode whose condition grows much worse on the way."""
 
 
 def flight_image(
@@ -66,3 +76,40 @@ def _limits(values: np.ndarray, least: float) -> tuple[float, float]:
     spread = max(high - low, 2 * least)
     middle = (low + high) / 2
     return middle - 0.6 * spread, middle + 0.75 * spread
+
+
+def references_figure(name: str, number: int = EPISODE) -> "Figure":
+    """Weight support and reward of the references over one held-out episode.
+
+    Args:
+        name: of the insect, one of `INSECTS`.
+        number: of the episode.
+
+    Raises:
+        ImportError: without matplotlib.
+    """
+    require_matplotlib()
+    from matplotlib.figure import Figure
+
+    task, tuned = AdaptTask((load_insect(name),)), tuned_for(load_insect(name))
+    given = draws_of(task, "test")
+    change = int(given.draws.change_beat[number])
+    before, after = (flight.best_reward[number] for flight in given.flights)
+    beats = np.arange(1, BEATS + 1)
+    figure = Figure(figsize=(9.6, 3.2), dpi=100, layout="constrained")
+    left, right = figure.subplots(1, 2)
+    left.axhline(1, color=GREY, lw=1, ls="--")
+    right.plot(beats, np.where(beats <= change, before, after), "_", color=GREEN, ms=9, mew=2, label="full knowledge")
+    styles = zip(NAMES[1:], ("s-", "^-", "o-"), (GREY, ORANGE, BLUE), strict=True)
+    for controller, (reference, style, colour) in zip(controllers(task, tuned, given.index), styles, strict=True):
+        rewards, lifted = fly_beats(task, controller, given)
+        label = reference.replace("_", " ")
+        left.plot(beats, lifted[:, number], style, color=colour, ms=4, lw=1, label=label)
+        right.plot(beats, rewards[:, number], style, color=colour, ms=4, lw=1, label=label)
+    for axes, quantity in ((left, "true weight support"), (right, "reward")):
+        axes.axvline(change + 0.5, color=GREY, lw=1, ls=":")
+        axes.set(xlabel="beat; the dotted line is the change", ylabel=quantity, xlim=(0.5, BEATS + 0.5))
+        axes.set_xticks(range(0, BEATS + 1, 5))
+    handles, labels = right.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False, fontsize=9)
+    return figure

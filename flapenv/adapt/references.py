@@ -168,8 +168,8 @@ def trials(task: AdaptTask, index: np.ndarray, rng: np.random.Generator) -> Tria
     return Trials(index=index, draws=draws, flights=flights, noise=noise)
 
 
-def fly(task: AdaptTask, controller: Controller, given: Trials) -> np.ndarray:
-    """Undiscounted returns of a controller, shape (n,) [-].
+def fly_beats(task: AdaptTask, controller: Controller, given: Trials) -> tuple[np.ndarray, np.ndarray]:
+    """Rewards and true weight support of a controller beat by beat, shape (BEATS, n) each [-].
 
     Args:
         task: the insects.
@@ -178,13 +178,17 @@ def fly(task: AdaptTask, controller: Controller, given: Trials) -> np.ndarray:
     """
     everyone = np.ones(len(given.index), dtype=bool)
     before, after = given.flights
-    total = np.zeros(len(given.index))
+    rewards, lifted = np.zeros((2, BEATS, len(given.index)))
     for beat in range(BEATS):
         flight = choose(beat < given.draws.change_beat, before, after)
-        reward, weight_support = beat_reward(task, flight, controller.beats())
-        total += reward
-        controller.feel(weight_support * given.noise[beat], everyone)
-    return total
+        rewards[beat], lifted[beat] = beat_reward(task, flight, controller.beats())
+        controller.feel(lifted[beat] * given.noise[beat], everyone)
+    return rewards, lifted
+
+
+def fly(task: AdaptTask, controller: Controller, given: Trials) -> np.ndarray:
+    """Undiscounted returns of a controller, shape (n,) [-]; arguments as in `fly_beats`."""
+    return np.sum(fly_beats(task, controller, given)[0], axis=0)
 
 
 def best_returns(given: Trials) -> np.ndarray:

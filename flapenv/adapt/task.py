@@ -183,6 +183,10 @@ class AdaptTask:
             again = again[~self._feasible(index[again], fresh)]
         return drawn
 
+    def acceptance(self, rng: np.random.Generator, index: np.ndarray) -> float:
+        """Share of proposed conditions that can be hovered in, before the change and after it; arguments as `draw`."""
+        return float(np.mean(self._feasible(index, self._propose(rng, len(index)))))
+
     def _propose(self, rng: np.random.Generator, count: int) -> Draws:
         """Conditions within their ranges: one change, of the payload to any other or of the span to less."""
         shares = rng.random((count, 6)).T

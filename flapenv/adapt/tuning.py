@@ -12,6 +12,7 @@ import numpy as np
 
 from flapenv.adapt.references import (
     COORDINATES,
+    Controller,
     FeltLift,
     FixedStroke,
     LadderClimber,
@@ -141,15 +142,18 @@ def _least(cost: Callable[[np.ndarray], float], bounds: Iterable[tuple[float, fl
 
 def scores(task: AdaptTask, tuned: Tuned, given: Trials) -> dict[str, np.ndarray]:
     """Returns of the optimum and of the tuned references by their names, shape (n,) each [-]."""
+    flown = (fly(task, controller, given) for controller in controllers(task, tuned, given.index))
+    return dict(zip(NAMES, (best_returns(given), *flown), strict=True))
+
+
+def controllers(task: AdaptTask, tuned: Tuned, index: np.ndarray) -> tuple[Controller, ...]:
+    """The tuned references of the only insect of a task, at their beginning, in the order of `NAMES[1:]`."""
     fixed, felt = (beats_of(np.array(action)) for action in (tuned.fixed_action, tuned.felt_action))
-    climber = LadderClimber(task, given.index, tuned.ladder_height, tuned.ladder_gain, tuned.ladder_margin)
-    returns = (
-        best_returns(given),
-        fly(task, FixedStroke(fixed), given),
-        fly(task, FeltLift(felt, tuned.felt_gain, tuned.felt_margin), given),
-        fly(task, climber, given),
+    return (
+        FixedStroke(fixed),
+        FeltLift(felt, tuned.felt_gain, tuned.felt_margin),
+        LadderClimber(task, index, tuned.ladder_height, tuned.ladder_gain, tuned.ladder_margin),
     )
-    return dict(zip(NAMES, returns, strict=True))
 
 
 def write_references(folder: Path, names: tuple[str, ...] = INSECTS) -> Path:

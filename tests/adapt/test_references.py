@@ -18,7 +18,7 @@ from flapenv.adapt.references import (
     fixed_returns,
     fly,
 )
-from flapenv.adapt.report import blind_loss, blind_text, references_table
+from flapenv.adapt.report import blind_loss, losses_table, references_table
 from flapenv.adapt.task import NOISE
 from flapenv.adapt.tuning import NAMES, Tuned, action_of, draws_of, scores, shipped, shipped_rows
 
@@ -134,4 +134,4 @@ def test_the_report_names_every_insect_and_where_the_ladder_loses() -> None:
     table = references_table()
     for name in shipped_rows():
         assert name in table
-    assert "without noise" in blind_text(INSECT)
+    assert "without noise" in losses_table(INSECT)
