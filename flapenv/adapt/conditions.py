@@ -27,7 +27,9 @@ DENSITY_RATIO = (0.8, 1.05)
 SPAN_LOST = (0.0, 0.15)
 """Share of the span lost at the tip of both wings [-]."""
 DEGREE = 64
-"""Of the Chebyshev interpolation in the root of the span lost; 1e-8 of k_ind for beta planforms."""
+"""Of the Chebyshev interpolation in the root of the span lost; 1e-9 of k_ind for beta planforms."""
+CELLS = 1024
+"""Of the grid that it is laid out on, to be looked up by cubics; 1e-8 of k_ind."""
 
 
 @record
@@ -114,7 +116,7 @@ class ConditionTable:
             model: of the nominal condition.
         """
         self.nominal = stack_cases([hover_case(insect, model) for insect in insects])
-        self._coefficients = np.stack([_cut_coefficients(insect.wing) for insect in insects], axis=-1)
+        self._grid = np.stack([_cut_grid(insect.wing) for insect in insects])
         self._inflow = np.array(
             [
                 induced.hover_downwash(insect.wing, insect.mass * model.gravity, model.air_density)
@@ -130,8 +132,17 @@ class ConditionTable:
             index: which insect each row is, shape (n,).
             span_lost: shape (n,).
         """
-        place = 2 * np.sqrt(np.broadcast_to(as_numpy(span_lost), index.shape) / SPAN_LOST[1]) - 1
-        area, second, third, uneven = chebyshev.chebval(place, self._coefficients[..., index], tensor=False)
+        place = CELLS * np.sqrt(np.broadcast_to(as_numpy(span_lost), index.shape) / SPAN_LOST[1])
+        first = np.clip(place.astype(np.intp) - 1, 0, CELLS - 3)
+        x = (place - first)[:, None]
+        cubics = (
+            -(x - 1) * (x - 2) * (x - 3) / 6,
+            x * (x - 2) * (x - 3) / 2,
+            -x * (x - 1) * (x - 3) / 2,
+            x * (x - 1) * (x - 2) / 6,
+        )
+        found = sum(cubic * self._grid[index, first + step] for step, cubic in enumerate(cubics))
+        area, second, third, uneven = np.asarray(found).T
         return area, second, third, uneven
 
     def cases(self, index: np.ndarray, condition: Condition) -> HoverCase:
@@ -159,17 +170,17 @@ class ConditionTable:
             downwash_rate=own.downwash_rate * growth,
             reference_frequency=own.reference_frequency,
             reference_amplitude=own.reference_amplitude,
-            force_constants=np.zeros(0),
-            inertia=np.zeros(0),
+            force_constants=own.force_constants,
+            inertia=own.inertia,
         )
 
 
 @functools.lru_cache(maxsize=256)
-def _cut_coefficients(wing: Wing) -> np.ndarray:
-    """Chebyshev coefficients of I₀ and of I₂, I₃ and k_ind over the whole wing's, shape (DEGREE + 1, 4).
+def _cut_grid(wing: Wing) -> np.ndarray:
+    """I₀, and I₂, I₃ and k_ind over the whole wing's, on a grid even in the root of the span lost, (CELLS + 1, 4).
 
     In the span lost they rise from zero as its powers between 1 and 2, which no polynomial follows; in the root of it
-    they are smooth enough.
+    they are smooth enough for few costly points.
     """
     place = np.cos((np.arange(DEGREE + 1) + 0.5) * math.pi / (DEGREE + 1))
     lost = SPAN_LOST[1] * ((place + 1) / 2) ** 2
@@ -180,4 +191,5 @@ def _cut_coefficients(wing: Wing) -> np.ndarray:
         shape.remaining(3) / whole.moment(3),
         induced.k_ind(cut_wing(wing, lost)) / induced.k_ind(wing),
     )
-    return np.asarray(chebyshev.chebfit(place, np.stack(columns, axis=-1), DEGREE))
+    coefficients = chebyshev.chebfit(place, np.stack(columns, axis=-1), DEGREE)
+    return np.asarray(chebyshev.chebval(np.linspace(-1, 1, CELLS + 1), coefficients)).T

@@ -12,7 +12,6 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from flapenv.adapt.conditions import NOMINAL
 from flapenv.adapt.ladder import BOX
 from flapenv.adapt.task import BEATS, NOISE, AdaptTask, Draws, Flight, choose
 from flapenv.aero.arrays import Real
@@ -112,7 +111,7 @@ class LadderClimber:
         """Take the insect of every row (n,), and the first place, κ and the margin, of every row or of all."""
         self._task, self._gain, self._margin = task, gain, margin
         self._height = np.array(height)
-        self._nominal: HoverCase = task.cases(index, NOMINAL)
+        self._nominal: HoverCase = task.nominal.rows(index)
         self._full = task.ladder.full_lift(self._nominal, task.model)
 
     def beats(self) -> Beats:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from flapenv.adapt.conditions import DENSITY_RATIO, PAYLOAD, SPAN_LOST, Condition, ConditionTable
+from flapenv.adapt.conditions import DENSITY_RATIO, NOMINAL, PAYLOAD, SPAN_LOST, Condition, ConditionTable
 from flapenv.adapt.ladder import BOX, lift_ladder
 from flapenv.aero.checks import record
 from flapenv.case import HoverCase, lift_constant
@@ -110,6 +110,7 @@ class AdaptTask:
                 )
         self.frequency = np.array([FREQUENCY_RATIO * one.stroke.frequency for one in best])
         self.table = ConditionTable(insects, self.model)
+        self.nominal = self.cases(np.arange(len(insects)), NOMINAL)
 
     def cases(self, index: np.ndarray, condition: Condition) -> HoverCase:
         """The cases of insects in conditions, at the task's frequency; arguments as in `flight`."""

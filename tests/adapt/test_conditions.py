@@ -103,3 +103,13 @@ def test_every_burden_raises_the_induced_power_factor() -> None:
 def test_conditions_outside_their_range_are_refused(values: dict[str, Any], kind: type[Exception]) -> None:
     with pytest.raises(kind, match=next(iter(values))):
         Condition(**values)
+
+
+def test_a_blunt_tip_costs_at_once_and_hardly_more_after_that() -> None:
+    table, index = ConditionTable(ALL, MODEL), np.arange(len(ALL))
+    _, _, _, little = table.cut(index, 0.05)
+    _, _, _, most = table.cut(index, 0.15)
+    assert np.all((little > 1.08) & (little < 1.16))
+    assert np.all((most >= little) & (most < little + 0.03))
+    ratios = table.cases(index, Condition(span_lost=0.15)).aspect_ratio
+    assert 2.2 < ratios.min() < 2.25  # below what the paper states the lifting line for
