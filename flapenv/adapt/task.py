@@ -10,8 +10,9 @@ from flapenv.adapt.ladder import BOX, lift_ladder
 from flapenv.aero.checks import record
 from flapenv.case import HoverCase, lift_constant
 from flapenv.insects import Insect
+from flapenv.model import warn_of_aspect_ratio
 from flapenv.objective import LEAST_PENALTY
-from flapenv.optimum import lower_bound, optimum
+from flapenv.optimum import lower_bound
 from flapenv.problem import HoverProblem
 
 BEATS = 20
@@ -101,16 +102,27 @@ class AdaptTask:
                 burden, and conditions to draw from.
         """
         self.insects, self.model, self.ladder = insects, PROBLEM.model, lift_ladder()
-        best = [optimum(insect) for insect in insects]
-        for one in best:
-            if not one.feasible:
-                raise ValueError(
-                    f"insect {one.insect!r} is not allowed: its largest weight support in problem A is "
-                    f"{one.max_weight_support:.3f}; allowed: insects that can hover there"
-                )
-        self.frequency = np.array([FREQUENCY_RATIO * one.stroke.frequency for one in best])
+        for insect in insects:
+            warn_of_aspect_ratio(insect.name, insect.wing.aspect_ratio, self.model, stacklevel=3)
         self.table = ConditionTable(insects, self.model)
+        self.frequency = FREQUENCY_RATIO * self._best_frequency()
         self.nominal = self.cases(np.arange(len(insects)), NOMINAL)
+
+    def _best_frequency(self) -> np.ndarray:
+        """The frequency of problem A's optimum, at the largest amplitude with the ladder's first waveform [Hz].
+
+        `optimum` finds the same; here it is free.
+        """
+        case, ladder = self.table.nominal, self.ladder
+        low, high = HoverProblem().box.bounds("frequency", case.reference)
+        largest = ladder.full_lift(dataclasses.replace(case, reference_frequency=high), self.model)
+        for insect, lift in zip(self.insects, largest * ladder.largest_lift, strict=True):
+            if lift < 1:
+                raise ValueError(
+                    f"insect {insect.name!r} is not allowed: its largest weight support in problem A is {lift:.3f}; "
+                    "allowed: insects that can hover there"
+                )
+        return np.clip(high / np.sqrt(largest * ladder.lift[0]), low, high)
 
     def cases(self, index: np.ndarray, condition: Condition) -> HoverCase:
         """The cases of insects in conditions, at the task's frequency; arguments as in `flight`."""

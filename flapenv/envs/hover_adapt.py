@@ -26,11 +26,10 @@ from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import action_table, described, stroke_rows
-from flapenv.envs.insect_choice import InsectChoice, choose_insects, chosen_rows
+from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
 from flapenv.envs.single import SingleEnv
 from flapenv.objective import LEAST_GAP_WEIGHT, QUADRATURE_TOLERANCE
 from flapenv.performance import hover_averages, yardstick
-from flapenv.problem import HoverProblem
 
 OBSERVATION_LIMIT = 5.0
 MEMORY = 4
@@ -87,7 +86,7 @@ class HoverAdaptVectorEnv(BatchEnv):
         render_mode: str | None = None,
         **unknown: Any,
     ) -> None:
-        """Solve the optima of all insects (once per process), read the references and set up the spaces.
+        """Interpolate the conditions of all insects (once per process), read the references and set up the spaces.
 
         Args:
             num_envs: rows.
@@ -110,7 +109,7 @@ class HoverAdaptVectorEnv(BatchEnv):
         refuse_unknown(unknown, type(self))
         self._with_references = require_flag("references", references)
         require_flag("tune_references", tune_references)
-        self.insects = choose_insects(insect, HoverProblem(), include_infeasible=False)
+        self.insects = listed_insects(insect)
         self.dtype = np.dtype(require_name("dtype", getattr(dtype, "__name__", str(dtype)), ("float32", "float64")))
         self.task, self.coordinates = AdaptTask(self.insects), COORDINATES
         tuned = [tuned_for(one) if tune_references else shipped(one) for one in self.insects]
@@ -380,7 +379,7 @@ class HoverAdaptEnv(SingleEnv):
     An insect drawn uniformly, or `options={"insect": name}`. Mass 1 to 1.25 times its own, density 0.8 to 1.05 times
     the model's, 0 to 15 % of the span lost at the tips; drawn until the box lifts at least 1.05 times the weight. After
     5 to 15 beats the payload becomes another or more of the span is lost. `options={"condition": {"payload": 1.1}}`
-    sets a condition that stays; what it leaves out is nominal.
+    sets a condition for the whole of that episode; what it leaves out is nominal.
 
     ## Episode end
     Terminates after 20 beats, or as many as `beats` says; never truncates.

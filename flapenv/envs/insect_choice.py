@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from flapenv.aero.checks import require_name
+from flapenv.aero.checks import is_single, require_name
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.optimum import optimum
 from flapenv.problem import HoverProblem
@@ -21,6 +21,35 @@ LEAST_WEIGHT_SUPPORT = 1.05
 """Λ_max of a random wing at least, where its frequency is fixed and many could not hover."""
 
 
+def listed_insects(choice: InsectChoice, *, others: tuple[str, ...] = ()) -> tuple[Insect, ...]:
+    """The insects that a choice means, each name once.
+
+    Args:
+        choice: "all", a name of `INSECTS`, an `Insect` or the dict of one, or several of these.
+        others: words that may stand in the place of a name, for the message about one that may not.
+
+    Raises:
+        TypeError: for a choice of another kind, or an insect with array fields.
+        ValueError: for an unknown name, no insect at all, or two of one name.
+    """
+    if isinstance(choice, str):
+        require_name("insect", choice, ("all", *others, *INSECTS))
+        insects = tuple(load_insect(name) for name in (INSECTS if choice == "all" else (choice,)))
+    elif isinstance(choice, Sequence):
+        insects = tuple(as_insect(one) for one in choice)
+    else:
+        insects = (as_insect(choice),)
+    if not insects:
+        raise ValueError("insect = [] is not allowed; allowed: at least one insect")
+    names = [one.name for one in insects]
+    for one in insects:
+        if not is_single(one):
+            raise TypeError(f"insect {one.name!r} has array fields; allowed: insects with scalar fields")
+        if names.count(one.name) > 1:
+            raise ValueError(f"insect holds {names.count(one.name)} called {one.name!r}; allowed: each name once")
+    return insects
+
+
 def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infeasible: bool) -> tuple[Insect, ...]:
     """The insects an environment draws from, with a warning about every one that cannot hover in the box.
 
@@ -33,21 +62,8 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
         TypeError: for a choice of another kind.
         ValueError: for an unknown name, no insect at all, or "all" where none is feasible.
     """
-    if isinstance(choice, str):
-        require_name("insect", choice, ("all", RANDOM_WING, *INSECTS))
-    everyone = choice == "all"
-    if everyone:
-        insects = tuple(load_insect(name) for name in INSECTS)
-    elif isinstance(choice, Sequence) and not isinstance(choice, str):
-        insects = tuple(as_insect(one) for one in choice)
-    else:
-        insects = (as_insect(choice),)
-    if not insects:
-        raise ValueError("insect = [] is not allowed; allowed: at least one insect")
-    names = [one.name for one in insects]
-    for name in names:
-        if names.count(name) > 1:
-            raise ValueError(f"insect holds {names.count(name)} called {name!r}; allowed: each name once")
+    insects = listed_insects(choice, others=(RANDOM_WING,))
+    everyone = isinstance(choice, str) and choice == "all"
     infeasible = {insect.name: optimum(insect, problem) for insect in insects}
     infeasible = {name: best for name, best in infeasible.items() if not best.feasible}
     if infeasible:

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from flapenv import INSECTS, Insect, Stroke, Wing, WingFactors, load_insect, optimum
+from flapenv import INSECTS, HoverProblem, Insect, Stroke, StrokeBox, Wing, WingFactors, load_insect, optimum
 from flapenv.adapt import NOMINAL, AdaptTask
 from flapenv.adapt.conditions import DENSITY_RATIO, PAYLOAD, SPAN_LOST
 from flapenv.adapt.task import BEATS, CHANGE, LEAST_MARGIN, choose
@@ -23,7 +23,7 @@ def test_nominal_flight_has_the_bound_of_problem_a_and_its_optimum_at_a_lower_am
     bounds = [optimum(name).lower_bound for name in INSECTS]
     np.testing.assert_allclose(flight.reference_power, bounds, rtol=1e-7)
     assert np.all(flight.best_power > [optimum(name).specific_power for name in INSECTS])  # f is not free here
-    np.testing.assert_allclose(task.frequency, [1.15 * optimum(name).stroke.frequency for name in INSECTS])
+    np.testing.assert_allclose(task.frequency, [1.15 * optimum(name).stroke.frequency for name in INSECTS], rtol=1e-6)
 
 
 def test_draws_lie_in_their_ranges_and_can_be_hovered_in(task: AdaptTask, rng: np.random.Generator) -> None:
@@ -93,6 +93,18 @@ def test_an_insect_that_cannot_hover_in_problem_a_is_refused() -> None:
         AdaptTask((heavy,))
 
 
+def test_an_insect_that_is_too_light_for_problem_a_flies_at_its_lowest_frequency() -> None:
+    feather = dataclasses.replace(load_insect("bumblebee"), name="feather", mass=1e-5)
+    task = AdaptTask((feather,))
+    assert task.frequency[0] == pytest.approx(1.15 * optimum(feather).stroke.frequency, rel=1e-6)
+    flight = task.flight(np.zeros(1, dtype=np.intp), NOMINAL)
+    frequency = float(task.frequency[0])
+    best = optimum(feather, HoverProblem(box=StrokeBox(frequency=(frequency, frequency))))
+    assert best.weight_support > 1.1  # even the smallest amplitude lifts more than it has to
+    assert flight.best_power[0] == pytest.approx(best.specific_power, rel=1e-6)
+    assert flight.multiplier[0] == best.multiplier == 0
+
+
 def test_an_insect_that_barely_hovers_in_problem_a_still_has_conditions_to_draw_from(rng: np.random.Generator) -> None:
     wing = Wing(length=0.05, mean_chord=0.015, r1_hat=0.5)
     stroke = Stroke(frequency=20.0, flap_amplitude=1.0, pitch_amplitude=1.0)
@@ -101,5 +113,6 @@ def test_an_insect_that_barely_hovers_in_problem_a_still_has_conditions_to_draw_
     barely = dataclasses.replace(light, name="barely", mass=1e-3 * optimum(light).max_weight_support / 1.02)
     assert 1 < optimum(barely).max_weight_support < 1.03
     task, index = AdaptTask((barely,)), np.zeros(ROWS, dtype=np.intp)
+    assert task.frequency[0] == pytest.approx(1.15 * optimum(barely).stroke.frequency, rel=1e-6)
     assert task.flight(index[:1], NOMINAL).max_weight_support[0] > 1.15**2
     assert task.acceptance(rng, index) > 0.03

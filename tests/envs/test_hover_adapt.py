@@ -15,6 +15,7 @@ from flapenv.adapt.task import BEATS, CHANGE
 from flapenv.adapt.tuning import NAMES, shipped
 from flapenv.envs import HoverAdaptEnv, HoverAdaptVectorEnv
 from flapenv.performance import yardstick
+from flapenv.wing_pool import wing_pool
 
 ID = "flapenv/HoverAdapt-v0"
 ROBOT = Insect(
@@ -272,6 +273,8 @@ def test_batches_agree_with_the_scalar_environment_on_what_they_compute() -> Non
     ("arguments", "kind", "said"),
     [
         ({"insect": "moth"}, ValueError, "insect = 'moth' is unknown"),
+        ({"insect": wing_pool(3)}, TypeError, "insect 'train-0' has array fields"),
+        ({"insect": ["hawkmoth", "hawkmoth"]}, ValueError, "2 called 'hawkmoth'"),
         ({"problem": "free-frequency"}, TypeError, "problem = 'free-frequency' is not an argument"),
         ({"references": "yes"}, TypeError, "references = 'yes'"),
         ({"tune_references": 1}, TypeError, "tune_references = 1"),
@@ -285,7 +288,6 @@ def test_bad_arguments_are_named(arguments: dict[str, Any], kind: type[Exception
         gym.make(ID, **arguments)
 
 
-@pytest.mark.filterwarnings("ignore:no stroke of the box carries the weight:UserWarning")
 def test_an_insect_that_cannot_hover_is_refused() -> None:
     with pytest.raises(ValueError, match="insect 'robot' is not allowed: its largest weight support"):
         HoverAdaptEnv(insect=dataclasses.replace(ROBOT, mass=1e-2))
