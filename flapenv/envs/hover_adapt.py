@@ -91,8 +91,8 @@ class HoverAdaptVectorEnv(BatchEnv):
         Args:
             num_envs: rows.
             insect: "all", a name, an `Insect`, the dict of one, or a list of these; drawn uniformly at each reset.
-            references: whether the controllers and the fixed stroke fly beside every row; without them their returns
-                are missing from the infos and a step costs less.
+            references: whether the controllers and the fixed stroke fly beside every row, where `infos` want them;
+                without them their returns are missing from the infos and a step costs less.
             tune_references: whether insects without shipped references get theirs now, some ten seconds each, once
                 per process; else only the optimum with full knowledge stands beside them.
             beats: of an episode; the references are tuned for the default.
@@ -136,6 +136,7 @@ class HoverAdaptVectorEnv(BatchEnv):
             infos=infos,
         )
         self.beats = require_count("beats", beats)
+        self._with_references &= any(f"return/{name}" in self.infos for name in NAMES[1:])
         self._insect = np.zeros(num_envs, dtype=np.intp)
         self._flown = np.zeros(num_envs, dtype=np.intp)
         """Beats of the present episode."""

@@ -222,6 +222,10 @@ def test_without_references_their_keys_stay_and_are_empty() -> None:
     with_them = HoverAdaptEnv()
     with_them.reset(seed=1)
     assert fly(with_them)[-1]["return"] == info["return"]  # they take nothing from the generator
+    few = HoverAdaptEnv(infos=["return"])
+    few.reset(seed=1)
+    assert fly(few)[-1] == {"return": info["return"]}
+    assert few.batch._controllers == {}  # nobody asked for them
 
 
 def test_rows_in_different_beats_go_on_where_they_were() -> None:
