@@ -22,6 +22,7 @@ LAYERS = (  # each may import itself and what stands after it
     "flapenv.adapt.__main__",
     "flapenv.adapt.report",
     "flapenv.adapt.drawing",
+    "flapenv.adapt.company",
     "flapenv.adapt.tuning",
     "flapenv.adapt.references",
     "flapenv.adapt.task",

@@ -7,26 +7,18 @@ import numpy as np
 from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
+from flapenv.adapt.company import Company
 from flapenv.adapt.conditions import NOMINAL, Condition
 from flapenv.adapt.ladder import BOX
-from flapenv.adapt.references import (
-    COORDINATES,
-    Beats,
-    Controller,
-    FeltLift,
-    FixedStroke,
-    LadderClimber,
-    beat_reward,
-    beats_of,
-)
+from flapenv.adapt.references import COORDINATES
 from flapenv.adapt.task import BEATS, LEAST_MARGIN, NOISE, AdaptTask, Draws, Flight, choose
-from flapenv.adapt.tuning import NAMES, Tuned, shipped, tuned_for
+from flapenv.adapt.tuning import NAMES, shipped, tuned_for
 from flapenv.aero.checks import require_count, require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
-from flapenv.aero.stroke import Stroke
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import action_table, described, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
+from flapenv.envs.last_beat import LastBeat
 from flapenv.envs.single import SingleEnv
 from flapenv.objective import LEAST_GAP_WEIGHT, QUADRATURE_TOLERANCE
 from flapenv.performance import hover_averages, yardstick
@@ -36,16 +28,6 @@ MEMORY = 4
 """Beats that are observed."""
 TRACES = 4
 """Kept of every beat for pictures: weight support, true and felt, the reward, and that of the optimum."""
-UNTUNED = Tuned(
-    fixed_action=(0.0,) * len(COORDINATES),
-    felt_action=(0.0,) * len(COORDINATES),
-    felt_gain=0.0,
-    felt_margin=0.0,
-    ladder_height=1.0,
-    ladder_gain=0.0,
-    ladder_margin=0.0,
-)
-"""Fills the rows of insects without references, whose returns are not shown."""
 RETURN_KEYS = ("return", *(f"return/{name}" for name in NAMES))
 
 
@@ -107,15 +89,11 @@ class HoverAdaptVectorEnv(BatchEnv):
             ValueError: for an unknown name, a value outside its range, or an insect that cannot hover in problem A.
         """
         refuse_unknown(unknown, type(self))
-        self._with_references = require_flag("references", references)
+        require_flag("references", references)
         require_flag("tune_references", tune_references)
         self.insects = listed_insects(insect)
         self.dtype = np.dtype(require_name("dtype", getattr(dtype, "__name__", str(dtype)), ("float32", "float64")))
         self.task, self.coordinates = AdaptTask(self.insects), COORDINATES
-        tuned = [tuned_for(one) if tune_references else shipped(one) for one in self.insects]
-        self._is_tuned = np.array([references and one is not None for one in tuned])
-        self._tuned = _stacked([one or UNTUNED for one in tuned])
-        self._tuned_beats = tuple(beats_of(self._tuned[name]) for name in ("fixed_action", "felt_action"))
         self._rule = BOX.time_rule(tolerance=QUADRATURE_TOLERANCE)
 
         nominal = self.task.table.nominal
@@ -136,20 +114,21 @@ class HoverAdaptVectorEnv(BatchEnv):
             infos=infos,
         )
         self.beats = require_count("beats", beats)
-        self._with_references &= any(f"return/{name}" in self.infos for name in NAMES[1:])
+        wanted = references and any(f"return/{name}" in self.infos for name in NAMES[1:])
+        tuned = [tuned_for(one) if tune_references else shipped(one) for one in self.insects]
+        self._company = Company(self.task, tuned, num_envs, wanted=wanted)
         self._insect = np.zeros(num_envs, dtype=np.intp)
         self._flown = np.zeros(num_envs, dtype=np.intp)
         """Beats of the present episode."""
         self._draws = Draws(
-            before=_rows(Condition(), num_envs),
-            after=_rows(Condition(), num_envs),
+            before=_rows(NOMINAL, num_envs),
+            after=_rows(NOMINAL, num_envs),
             change_beat=self._flown + self.beats,
         )
         self._begin_flights()
         self._memory = np.zeros((num_envs, MEMORY, 2 + axes), dtype=np.float32)  # the last beat first
-        self._returns = {key: np.zeros(num_envs) for key in RETURN_KEYS}
-        self._controllers: dict[str, Controller] = {}
-        self._last = _LastBeat(num_envs, self.beats)
+        self._return = np.zeros(num_envs)
+        self._last = LastBeat(num_envs, self.beats, tuple(vars(NOMINAL)), TRACES)
 
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
         insect = self.np_random.integers(len(self.insects), size=self.num_envs)
@@ -162,11 +141,9 @@ class HoverAdaptVectorEnv(BatchEnv):
         self._draws = choose(mask, draws, self._draws)
         self._flown = np.where(mask, 0, self._flown)
         self._memory[mask] = 0
-        for total in self._returns.values():
-            total[mask] = 0
+        self._return[mask] = 0
         self._begin_flights()
-        if self._with_references:
-            self._begin_references(mask)
+        self._company.begin(mask, self._insect)
         return {"insect": self._names[self._insect]}
 
     def _given(self, insect: np.ndarray, condition: Any) -> Draws:
@@ -195,20 +172,6 @@ class HoverAdaptVectorEnv(BatchEnv):
     def _set_now(self, now: Flight) -> None:
         self._now, self._now_cast = now, now.cast(self.dtype)
 
-    def _begin_references(self, mask: np.ndarray) -> None:
-        """Set the references off in the rows of the mask, with the insects that fly there now."""
-        rows = {name: value[self._insect] for name, value in self._tuned.items()}
-        fixed, felt = (Beats(**{k: v[self._insect] for k, v in vars(b).items()}) for b in self._tuned_beats)
-        climb = (rows[f"ladder_{name}"] for name in ("height", "gain", "margin"))
-        fresh: dict[str, Controller] = {
-            "fixed_stroke": FixedStroke(fixed),
-            "felt_lift": FeltLift(felt, rows["felt_gain"], rows["felt_margin"]),
-            "lift_ladder": LadderClimber(self.task, self._insect, *climb),
-        }
-        for name, before in self._controllers.items():
-            fresh[name].carry(~mask, before)
-        self._controllers = fresh
-
     def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
         changing = mask & (self._flown == self._draws.change_beat)
         if changing.any():
@@ -223,16 +186,16 @@ class HoverAdaptVectorEnv(BatchEnv):
         beat = np.concatenate([np.stack([felt - 1, np.log(felt_power)], axis=-1), np.clip(actions, -1, 1)], axis=-1)
         memory = np.concatenate([beat[:, None], self._memory[:, :-1]], axis=1)
         self._memory = np.where(mask[:, None, None], memory, self._memory).astype(np.float32)
-        self._returns["return"] += np.where(mask, reward, 0)
-        self._fly_references(noise[:, 0], mask)
-        condition = self._condition()
-        seen = weight_support, felt, reward, self._now.best_reward
-        self._last.keep(mask, self._insect, self._flown, strokes, condition, *seen)
+        self._return += np.where(mask, reward, 0)
+        self._company.fly(self._now, noise[:, 0], mask)
+        condition = vars(self._condition())
+        traces = weight_support, felt, reward, self._now.best_reward
+        self._last.keep(mask, self._insect, self._flown, strokes, condition, traces)
         self._flown = self._flown + mask
         info = {
             "insect": self._names[self._insect],
             "beat": self._flown.copy(),
-            **{f"condition/{name}": value.copy() for name, value in vars(condition).items()},
+            **{f"condition/{name}": value.copy() for name, value in condition.items()},
             "weight_support": weight_support,
             "specific_power": specific_power,
             "lift_deficit": np.maximum(0, 1 - weight_support),
@@ -257,19 +220,12 @@ class HoverAdaptVectorEnv(BatchEnv):
         gap: np.ndarray = specific_power / self._now.best_power - 1 + charge * np.maximum(0, 1 - weight_support)
         return gap
 
-    def _fly_references(self, noise: np.ndarray, mask: np.ndarray) -> None:
-        """One beat of the optimum, and of the controllers with the noise that the row itself felt."""
-        self._returns["return/full_knowledge"] += np.where(mask, self._now.best_reward, 0)
-        for name, controller in self._controllers.items():
-            reward, weight_support = beat_reward(self.task, self._now, controller.beats())
-            self._returns[f"return/{name}"] += np.where(mask, reward, 0)
-            controller.feel(weight_support * noise, mask)
-
     def _return_infos(self) -> Info:
         """Sums of rewards since the episode began, those of the references only where there are any."""
-        infos: Info = {key: total.copy() for key, total in self._returns.items()}
+        infos: Info = {"return": self._return.copy()}
+        infos |= {f"return/{name}": total.copy() for name, total in self._company.returns.items()}
         for name in NAMES[1:]:
-            infos[f"_return/{name}"] = self._is_tuned[self._insect]
+            infos[f"_return/{name}"] = self._company.known[self._insect]
         return infos
 
     def _observe(self) -> np.ndarray:
@@ -287,52 +243,14 @@ class HoverAdaptVectorEnv(BatchEnv):
             insect = self.insects[self._insect[row]]
             condition = Condition(**{name: float(value[row]) for name, value in vars(self._condition()).items()})
             return flight_image(insect, insect.stroke, condition, self.task.model, np.zeros((TRACES, 0)), self.beats)
-        insect = self.insects[last.insect[row]]
-        stroke = Stroke(**{name: float(value[row]) for name, value in last.stroke.items()})
-        condition = Condition(**{name: float(value[row]) for name, value in last.condition.items()})
-        return flight_image(
-            insect, stroke, condition, self.task.model, last.trace[:, row, : last.beats[row]], self.beats
-        )
-
-
-class _LastBeat:
-    """What a picture shows: the last beat of every row and its episode so far, beyond the episode's end."""
-
-    def __init__(self, rows: int, beats: int) -> None:
-        self.insect = np.zeros(rows, dtype=np.intp)
-        self.beats = np.zeros(rows, dtype=np.intp)
-        self.stroke = {name: np.zeros(rows) for name in STROKE_PARAMETERS}
-        self.condition = {name: np.zeros(rows) for name in vars(Condition())}
-        self.trace = np.zeros((TRACES, rows, beats), dtype=np.float32)
-
-    def keep(
-        self,
-        mask: np.ndarray,
-        insect: np.ndarray,
-        flown: np.ndarray,
-        stroke: dict[str, np.ndarray],
-        condition: Condition,
-        *values: np.ndarray,
-    ) -> None:
-        """Take in a beat in the rows of the mask."""
-        rows = np.flatnonzero(mask)
-        self.insect[rows], self.beats[rows] = insect[rows], flown[rows] + 1
-        for name, kept in self.stroke.items():
-            kept[rows] = stroke[name][rows]
-        for name, kept in self.condition.items():
-            kept[rows] = getattr(condition, name)[rows]
-        for trace, value in zip(self.trace, values, strict=True):
-            trace[rows, flown[rows]] = value[rows]
+        insect, stroke = self.insects[last.insect[row]], last.stroke(row)
+        condition = Condition(**{name: float(value[row]) for name, value in last.numbers.items()})
+        return flight_image(insect, stroke, condition, self.task.model, last.traces(row), self.beats)
 
 
 def _rows(condition: Condition, count: int) -> Condition:
     """A condition for every row."""
     return Condition(**{name: np.full(count, value) for name, value in vars(condition).items()})
-
-
-def _stacked(tuned: list[Tuned]) -> dict[str, np.ndarray]:
-    """The fields of several insects' references, the insects along the first axis."""
-    return {name: np.array([getattr(one, name) for one in tuned]) for name in vars(UNTUNED)}
 
 
 @described(actions=action_table(stroke_rows(BOX, COORDINATES.axis_names)))

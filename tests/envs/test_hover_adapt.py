@@ -225,7 +225,7 @@ def test_without_references_their_keys_stay_and_are_empty() -> None:
     few = HoverAdaptEnv(infos=["return"])
     few.reset(seed=1)
     assert fly(few)[-1] == {"return": info["return"]}
-    assert few.batch._controllers == {}  # nobody asked for them
+    assert few.batch._company.controllers == {}  # nobody asked for them
 
 
 def test_rows_in_different_beats_go_on_where_they_were() -> None:
@@ -233,13 +233,13 @@ def test_rows_in_different_beats_go_on_where_they_were() -> None:
     env.reset(seed=1)
     for _ in range(3):
         env.step(np.zeros((4, 5), dtype=np.float32))
-    before = {name: np.array(one.beats().amplitude) for name, one in env._controllers.items()}
+    before = {name: np.array(one.beats().amplitude) for name, one in env._company.controllers.items()}
     observed = env._observe()
     mask = np.array([True, False, False, True])
     after, _ = env.reset(options={"reset_mask": mask})
     np.testing.assert_array_equal(after[~mask], observed[~mask])
     for name in ("felt_lift", "lift_ladder"):
-        np.testing.assert_array_equal(env._controllers[name].beats().amplitude[~mask], before[name][~mask])
+        np.testing.assert_array_equal(env._company.controllers[name].beats().amplitude[~mask], before[name][~mask])
     *_, infos = env.step(np.zeros((4, 5), dtype=np.float32))
     np.testing.assert_array_equal(infos["beat"], [1, 4, 4, 1])
     np.testing.assert_allclose(infos["return/full_knowledge"][~mask], 4 * infos_best(env)[~mask], rtol=1e-6)
