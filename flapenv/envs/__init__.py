@@ -1,7 +1,18 @@
 """The environments. One step is one wingbeat in every one of them."""
 
+from flapenv.envs.heave import HeaveEnv, HeaveVectorEnv
 from flapenv.envs.hover import HoverEnv
+from flapenv.envs.hover_adapt import HoverAdaptEnv, HoverAdaptVectorEnv
 from flapenv.envs.hover_batch import HoverVectorEnv
 from flapenv.envs.registration import ENV_IDS, register_envs
 
-__all__ = ["ENV_IDS", "HoverEnv", "HoverVectorEnv", "register_envs"]
+__all__ = [
+    "ENV_IDS",
+    "HeaveEnv",
+    "HeaveVectorEnv",
+    "HoverAdaptEnv",
+    "HoverAdaptVectorEnv",
+    "HoverEnv",
+    "HoverVectorEnv",
+    "register_envs",
+]

@@ -15,7 +15,7 @@ from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown, refuse_unused
 from flapenv.envs.hover_of_one import HoverOfOne
-from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool
+from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool, chosen_rows
 from flapenv.insects import Insect
 from flapenv.objective import HoverObjective, Score
 from flapenv.performance import yardstick
@@ -164,20 +164,10 @@ class HoverVectorEnv(BatchEnv):
         drawn = self.np_random.integers(len(self.flyers), size=self.num_envs)
         chosen = options.get("insect")
         if chosen is not None:
-            drawn = self._chosen(chosen)
+            drawn = chosen_rows(chosen, list(self.flyers.names), self.num_envs)
         self._insect = np.where(mask, drawn, self._insect)
         self._felt[mask] = FIRST_FELT
         return {"insect": self.flyers.names[self._insect]}
-
-    def _chosen(self, chosen: Any) -> np.ndarray:
-        """Row numbers of insects asked for by name, one for all rows or one for each."""
-        if not isinstance(chosen, str | list | tuple | np.ndarray):
-            raise TypeError(f"reset option insect = {chosen!r} is not allowed; allowed: a name, or one for each row")
-        names = [chosen] * self.num_envs if isinstance(chosen, str) else list(chosen)
-        if len(names) != self.num_envs:
-            raise ValueError(f"reset option insect has {len(names)} names; allowed: one, or one for each row")
-        number = {name: i for i, name in enumerate(self.flyers.names)}
-        return np.array([number[require_name("reset option insect", name, number)] for name in names], dtype=np.intp)
 
     def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
         reference = StrokeReference(*(own[self._insect] for own in self._reference))

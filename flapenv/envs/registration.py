@@ -3,8 +3,9 @@
 import gymnasium as gym
 
 _ENTRY_POINTS = {
-    "flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover_batch:HoverVectorEnv"),
-    "flapenv/Heave-v0": ("flapenv.envs.heave:HeaveEnv", "flapenv.envs.heave:HeaveVectorEnv"),
+    "flapenv/Hover-v0": ("hover:HoverEnv", "hover_batch:HoverVectorEnv"),
+    "flapenv/HoverAdapt-v0": ("hover_adapt:HoverAdaptEnv", "hover_adapt:HoverAdaptVectorEnv"),
+    "flapenv/Heave-v0": ("heave:HeaveEnv", "heave:HeaveVectorEnv"),
 }
 ENV_IDS: tuple[str, ...] = tuple(_ENTRY_POINTS)
 
@@ -17,4 +18,8 @@ def register_envs() -> None:
     """
     for name, (entry_point, vector_entry_point) in _ENTRY_POINTS.items():
         if name not in gym.registry:
-            gym.register(name, entry_point=entry_point, vector_entry_point=vector_entry_point)
+            gym.register(
+                name,
+                entry_point=f"flapenv.envs.{entry_point}",
+                vector_entry_point=f"flapenv.envs.{vector_entry_point}",
+            )

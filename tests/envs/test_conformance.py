@@ -18,10 +18,11 @@ from flapenv.envs import ENV_IDS
 
 MODES = [mode.name for mode in AutoresetMode]
 ROWS = 5
-ONE_BEAT: dict[str, dict[str, Any]] = {"flapenv/Heave-v0": {"beats": 1}}
+ONE_BEAT: dict[str, dict[str, Any]] = {"flapenv/Heave-v0": {"beats": 1}, "flapenv/HoverAdapt-v0": {"beats": 1}}
 """Arguments with which an episode ends after one beat, where it does not anyway."""
 JUST_BEGUN = {
     "flapenv/Hover-v0": lambda seen: seen[..., -1] == 1,  # the whole episode is left
+    "flapenv/HoverAdapt-v0": lambda seen: seen[..., -1] == 1,
     "flapenv/Heave-v0": lambda seen: seen[..., 2] == 0,  # no weight support felt yet
 }
 """Whether observations are the first of an episode."""
