@@ -11,7 +11,7 @@ from flapenv.aero.checks import require_count, require_name, require_real
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import StrokeCoordinates
-from flapenv.envs.batch import BatchEnv, Info, refuse_unknown
+from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import action_table, described, markdown_table, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
 from flapenv.envs.single import SingleEnv
@@ -45,6 +45,19 @@ class HeaveVectorEnv(BatchEnv):
     """
 
     reset_options = ("insect", "height", "velocity")
+    info_keys = (
+        "insect",
+        "beat",
+        "weight_support",
+        "specific_power",
+        "power_excess",
+        *(f"{name}{unit}" for unit in ("", "_ratio") for name in ("height", "velocity", "gust")),
+        "reward/power",
+        "reward/height",
+        "reward/lost",
+        *(f"stroke/{name}" for name in STROKE_PARAMETERS),
+        "clipped",
+    )
 
     def __init__(
         self,
@@ -53,6 +66,7 @@ class HeaveVectorEnv(BatchEnv):
         insect: InsectChoice = "all",
         beats: int = 200,
         gusts: GustModel | Mapping[str, float] | None = None,
+        infos: InfoChoice = "all",
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         dtype: Any = "float32",
         render_mode: str | None = None,
@@ -65,6 +79,7 @@ class HeaveVectorEnv(BatchEnv):
             insect: "all", a name, an `Insect`, the dict of one, or a list of these; drawn uniformly at each reset.
             beats: after how many an episode is truncated.
             gusts: a `GustModel` or the dict of its fields; the default one where None.
+            infos: "all", "none", or the keys wanted.
             autoreset_mode: an `AutoresetMode` or its name.
             dtype: "float32" or "float64", of the averages over a beat; observations and actions are float32 always.
             render_mode: "rgb_array" or None.
@@ -98,6 +113,7 @@ class HeaveVectorEnv(BatchEnv):
             single_action_space=spaces.Box(-1.0, 1.0, (size,), np.float32),
             autoreset_mode=autoreset_mode,
             render_mode=render_mode,
+            infos=infos,
         )
         self._insect = np.zeros(num_envs, dtype=np.intp)
         self._height, self._velocity, self._gust, self._support = np.zeros((4, num_envs))
@@ -305,7 +321,7 @@ class HeaveEnv(SingleEnv):
     {ends}
 
     ## Arguments
-    `insect`, `beats`, `gusts`, `dtype`, `render_mode` as in `HeaveVectorEnv`.
+    `insect`, `beats`, `gusts`, `infos`, `dtype`, `render_mode` as in `HeaveVectorEnv`.
 
     ## Version history
     - v0: first version.

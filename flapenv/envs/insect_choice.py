@@ -108,5 +108,5 @@ def chosen_rows(chosen: Any, names: Sequence[str], rows: int) -> np.ndarray:
     wanted = [chosen] * rows if isinstance(chosen, str) else list(chosen)
     if len(wanted) != rows:
         raise ValueError(f"reset option insect has {len(wanted)} names; allowed: one, or one for each row")
-    own = list(names)
-    return np.array([own.index(require_name("reset option insect", name, own)) for name in wanted], dtype=np.intp)
+    number = {name: i for i, name in enumerate(names)}
+    return np.array([number[require_name("reset option insect", name, number)] for name in wanted], dtype=np.intp)
