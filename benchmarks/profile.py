@@ -64,6 +64,8 @@ def kernel_table(times: dict[str, float]) -> str:
     shapes: dict[str, Any] = {
         name: stroke[name] for name in ("flap_shape", "pitch_amplitude", "pitch_shape", "pitch_phase")
     }
+    double = np.random.default_rng(0).uniform(0.1, 1.5, NODES_AT_ONCE)
+    slow = 1e9 * seconds(np.sin, double, out=np.empty_like(double)) / NODES_AT_ONCE
     floor = sum(CALLS[name] * times[name] for name in CALLS)
     rows = [("what", "ns a node", "ns a wingbeat")]
     rows += [(f"{CALLS[name]} x {name}", f"{CALLS[name] * times[name]:.2f}", "") for name in CALLS]
@@ -74,6 +76,7 @@ def kernel_table(times: dict[str, float]) -> str:
         rows.append((f"the averages, {accelerator}", f"{took / nodes:.2f}", f"{took:.0f}"))
     work, _ = fast_path(ROWS)
     rows.append(("the fast path: with C_T, Λ and P*, numpy", "", f"{1e9 * seconds(work, 1) / ROWS:.0f}"))
+    rows.append(("for comparison: 1 x sin in double precision", f"{slow:.2f}", ""))
     return text_table(rows)
 
 
