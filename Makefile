@@ -7,6 +7,7 @@ FLOOR := .venv-floor
 ZOO := .venv-zoo
 RLLIB := .venv-rllib
 ENV_ID ?= flapenv/Hover-v0
+ZOO_ALGO ?= ppo
 
 .PHONY: help train test test-fast test-floor lint format bench validate clients client-ppo client-zoo client-rllib clean
 
@@ -61,8 +62,8 @@ client-ppo: $(STAMP)  ## One of them: the single-file PPO
 	OMP_NUM_THREADS=1 $(BIN)/python clients/single_file_ppo.py --env-id flapenv:$(ENV_ID) $(ARGS)
 
 client-zoo: $(ZOO)/.installed  ## One of them: rl-zoo3 with the recipes of clients/zoo
-	OMP_NUM_THREADS=1 $(ZOO)/bin/python -m rl_zoo3.train --algo ppo --env $(ENV_ID) --gym-packages flapenv \
-		--conf-file clients/zoo/ppo.yml --seed 0 --device cpu --log-folder runs/zoo $(ARGS)
+	OMP_NUM_THREADS=1 $(ZOO)/bin/python -m rl_zoo3.train --algo $(ZOO_ALGO) --env $(ENV_ID) --gym-packages flapenv \
+		--conf-file clients/zoo/$(ZOO_ALGO).yml --seed 0 --device cpu --log-folder runs/zoo --eval-freq 10000 --eval-episodes 16 $(ARGS)
 
 client-rllib: $(RLLIB)/.installed  ## One of them: RLlib, one process for the native vector environment
 	OMP_NUM_THREADS=1 $(RLLIB)/bin/python clients/rllib_ppo.py --env-id flapenv:$(ENV_ID) \

@@ -14,6 +14,7 @@ from typing import Any
 import gymnasium as gym
 import ray
 from ray.rllib.algorithms.ppo import PPOConfig
+from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
 from ray.tune.registry import register_env
 
 NAME = "flapenv-for-rllib"
@@ -34,7 +35,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--env-id", default="flapenv:flapenv/Hover-v0")
     parser.add_argument("--vectorize-mode", choices=("sync", "vector_entry_point"), default="sync")
-    parser.add_argument("--iterations", type=int, default=5)
+    parser.add_argument("--iterations", type=int, default=20)
     parser.add_argument("--rows", type=int, default=4_000, help="of an iteration")
     parser.add_argument("--num-envs", type=int, default=64)
     parser.add_argument("--env-runners", type=int, default=1, help="processes that step environments; 0 is none")
@@ -51,7 +52,16 @@ def main() -> None:
             num_envs_per_env_runner=args.num_envs,
             gym_env_vectorize_mode=args.vectorize_mode,
         )
-        .training(train_batch_size_per_learner=args.rows, minibatch_size=512, num_epochs=8, lr=1e-3)
+        .rl_module(model_config=DefaultModelConfig(fcnet_hiddens=[64, 64], free_log_std=True))
+        .training(
+            train_batch_size_per_learner=args.rows,
+            minibatch_size=512,
+            num_epochs=8,
+            lr=3e-3,
+            use_kl_loss=False,
+            grad_clip=0.5,
+        )
+        .evaluation(evaluation_duration=256, evaluation_duration_unit="episodes", evaluation_config={"explore": False})
         .debugging(seed=args.seed)
     )
     algorithm = config.build_algo()
@@ -62,6 +72,8 @@ def main() -> None:
             f"{iteration:>3}  {result['num_env_steps_sampled_lifetime']:>9,.0f} wingbeats"
             f"  {time.perf_counter() - start:6.1f} s  mean return {result['episode_return_mean']:8.3f}"
         )
+    evaluated = algorithm.evaluate()["env_runners"]
+    print(f"{evaluated['num_episodes']:.0f} noise-free episodes: mean return {evaluated['episode_return_mean']:.4f}")
     algorithm.stop()
     ray.shutdown()
 

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 import yaml
 from stable_baselines3 import PPO, SAC
+from stable_baselines3.common.env_util import make_vec_env
 
 from flapenv.envs import ENV_IDS
 
@@ -35,5 +36,6 @@ def test_every_id_has_a_recipe_that_its_learner_takes(env_id: str, name: str) ->
     schedule, _, rate = arguments["learning_rate"].partition("_")
     assert schedule == "lin"
     arguments["learning_rate"] = float(rate)
-    model = LEARNERS[name](recipe["policy"], env_id, device="cpu", **arguments)
-    assert model.observation_space.contains(model.get_env().reset()[0])
+    env = make_vec_env(env_id, recipe.get("n_envs", 1))
+    model = LEARNERS[name](recipe["policy"], env, device="cpu", **arguments)
+    assert model.get_env().num_envs == recipe.get("n_envs", 1)
