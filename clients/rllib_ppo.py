@@ -61,7 +61,12 @@ def main() -> None:
             use_kl_loss=False,
             grad_clip=0.5,
         )
-        .evaluation(evaluation_duration=256, evaluation_duration_unit="episodes", evaluation_config={"explore": False})
+        .evaluation(
+            evaluation_num_env_runners=args.env_runners,
+            evaluation_duration=256,
+            evaluation_duration_unit="episodes",
+            evaluation_config={"explore": False},
+        )
         .debugging(seed=args.seed)
     )
     algorithm = config.build_algo()
