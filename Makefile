@@ -3,15 +3,30 @@ PYTHON ?= $(shell command -v python3.11 || command -v python3)
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+FLOOR := .venv-floor
+ZOO := .venv-zoo
+RLLIB := .venv-rllib
+ENV_ID ?= flapenv/Hover-v0
+ZOO_ALGO ?= ppo
 
-.PHONY: help train test test-fast lint format bench validate clean
+.PHONY: help train test test-fast test-floor lint format bench validate clients client-ppo client-zoo client-rllib clean
 
 help:  ## Show the targets
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	@touch $@
+
+$(FLOOR)/.installed: pyproject.toml constraints-floor.txt
+	$(PYTHON) -m venv $(FLOOR)
+	$(FLOOR)/bin/python -m pip install --quiet --constraint constraints-floor.txt --editable '.[report]' pytest hypothesis
+	@touch $@
+
+.venv-%/.installed: pyproject.toml clients/requirements-%.txt
+	$(PYTHON) -m venv .venv-$*
+	.venv-$*/bin/python -m pip install --quiet --requirement clients/requirements-$*.txt --editable .
 	@touch $@
 
 train: $(STAMP)  ## Train one policy for all eight insects and print the comparison (about two minutes)
@@ -22,6 +37,9 @@ test: lint  ## Lint, type-check and run every test, the slow learning tests too
 
 test-fast: $(STAMP)  ## The tests without those that train a policy
 	$(BIN)/python -m pytest -m "not slow" $(ARGS)
+
+test-floor: $(FLOOR)/.installed  ## The environments' tests with the oldest Gymnasium, NumPy and SciPy allowed
+	$(FLOOR)/bin/python -m pytest tests/envs $(ARGS)
 
 lint: $(STAMP)  ## ruff (lint and format) and mypy
 	$(BIN)/ruff check .
@@ -38,5 +56,18 @@ bench: $(STAMP)  ## Wingbeats a second of the oracle, the fast path and the vect
 validate: $(STAMP)  ## Tables 2 and 3 of the paper beside ours
 	$(BIN)/python -m flapenv.validation
 
-clean:  ## Remove the virtual environment and caches, not the runs
-	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis
+clients: client-ppo client-zoo client-rllib  ## Other projects' learners on ENV_ID=flapenv/Hover-v0, see docs/clients.md
+
+client-ppo: $(STAMP)  ## One of them: the single-file PPO
+	OMP_NUM_THREADS=1 $(BIN)/python clients/single_file_ppo.py --env-id flapenv:$(ENV_ID) $(ARGS)
+
+client-zoo: $(ZOO)/.installed  ## One of them: rl-zoo3 with the recipes of clients/zoo
+	OMP_NUM_THREADS=1 $(ZOO)/bin/python -m rl_zoo3.train --algo $(ZOO_ALGO) --env $(ENV_ID) --gym-packages flapenv \
+		--conf-file clients/zoo/$(ZOO_ALGO).yml --seed 0 --device cpu --log-folder runs/zoo --eval-freq 10000 --eval-episodes 16 $(ARGS)
+
+client-rllib: $(RLLIB)/.installed  ## One of them: RLlib, one process for the native vector environment
+	OMP_NUM_THREADS=1 $(RLLIB)/bin/python clients/rllib_ppo.py --env-id flapenv:$(ENV_ID) \
+		--vectorize-mode vector_entry_point --env-runners 0 $(ARGS)
+
+clean:  ## Remove the virtual environments and caches, not the runs
+	rm -rf $(VENV) $(FLOOR) $(ZOO) $(RLLIB) .mypy_cache .pytest_cache .ruff_cache .hypothesis

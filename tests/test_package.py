@@ -12,10 +12,11 @@ import flapenv
 
 ROOT = Path(flapenv.__file__).parents[1]
 SOURCES = sorted(
-    path for folder in ("flapenv", "agents", "tests", "benchmarks") for path in (ROOT / folder).rglob("*.py")
+    path for folder in ("flapenv", "agents", "clients", "tests", "benchmarks") for path in (ROOT / folder).rglob("*.py")
 )
 LAYERS = (  # each may import itself and what stands after it
     "train",
+    "clients",
     "agents",
     "flapenv.validation",
     "flapenv.envs",

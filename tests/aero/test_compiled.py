@@ -74,6 +74,20 @@ def test_the_environment_rewards_the_same_with_either(problem: str) -> None:
     assert np.any(rewards[0] != rewards[1])  # by another path
 
 
+@pytest.mark.parametrize("arguments", [{}, {"action_scaling": "plain"}, {"insect": "random-wing", "pool_size": 8}])
+def test_the_scalar_environment_gives_the_same_compiled(arguments: dict[str, Any]) -> None:
+    plain, compiled = HoverEnv(**arguments), HoverEnv(accelerator="numba", **arguments)
+    actions = np.random.default_rng(0).uniform(-1.2, 1.2, (40, 6)).astype(np.float32)
+    for seed, action in enumerate(actions):
+        ours, theirs = (env.reset(seed=seed) for env in (compiled, plain))
+        np.testing.assert_array_equal(ours[0], theirs[0])
+        ours, theirs = (env.step(action) for env in (compiled, plain))
+        np.testing.assert_allclose(ours[0], theirs[0], rtol=1e-6, atol=1e-6)
+        assert ours[1] == pytest.approx(theirs[1], rel=1e-12)
+        for key, value in ours[4].items():
+            assert value == (pytest.approx(theirs[4][key], rel=1e-9) if type(value) is float else theirs[4][key]), key
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -12,7 +12,6 @@ from gymnasium.envs.registration import EnvSpec
 from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode, SyncVectorEnv, VectorEnv
-from stable_baselines3.common.env_checker import check_env as check_env_of_stable_baselines
 
 from flapenv.envs import ENV_IDS
 
@@ -67,10 +66,6 @@ def assert_infos_equal(one: dict[str, Any], other: dict[str, Any]) -> None:
 def test_gymnasiums_checker_passes_without_a_warning(env_id: str) -> None:
     check_env(gym.make(env_id, render_mode="rgb_array").unwrapped)
     check_env(gym.make(env_id).unwrapped)
-
-
-def test_stable_baselines_checker_passes_without_a_warning(env_id: str) -> None:
-    check_env_of_stable_baselines(gym.make(env_id, render_mode="rgb_array"))
 
 
 @pytest.mark.parametrize("mode", MODES)
