@@ -2,5 +2,6 @@
 
 from flapenv.envs.hover import HoverEnv, HoverVectorEnv
 from flapenv.envs.registration import ENV_IDS, register_envs
+from flapenv.envs.waveform import WaveformEnv, WaveformVectorEnv
 
-__all__ = ["ENV_IDS", "HoverEnv", "HoverVectorEnv", "register_envs"]
+__all__ = ["ENV_IDS", "HoverEnv", "HoverVectorEnv", "WaveformEnv", "WaveformVectorEnv", "register_envs"]

@@ -2,7 +2,10 @@
 
 import gymnasium as gym
 
-_ENTRY_POINTS = {"flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover:HoverVectorEnv")}
+_ENTRY_POINTS = {
+    "flapenv/Hover-v0": ("flapenv.envs.hover:HoverEnv", "flapenv.envs.hover:HoverVectorEnv"),
+    "flapenv/Waveform-v0": ("flapenv.envs.waveform:WaveformEnv", "flapenv.envs.waveform:WaveformVectorEnv"),
+}
 ENV_IDS: tuple[str, ...] = tuple(_ENTRY_POINTS)
 
 
