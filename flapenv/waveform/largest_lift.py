@@ -2,7 +2,8 @@
 
 At a given mean speed ⟨φ̇|φ̇| sin 2θ⟩ <= ⟨φ̇²⟩, and ⟨φ̇²⟩ is a convex function of the speed coefficients whose sum is
 given: it is largest in a corner, where each is either the smallest or the largest allowed. The corner with one large
-coefficient in mid-stroke, with θ at 45° or as near as the limit lets it, lifts the most of all that were found (tests).
+coefficient in mid-stroke, with θ at 45° or as near as the limit lets it, lifts within 1 % of the most that was found
+(tests).
 """
 
 import math

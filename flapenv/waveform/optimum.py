@@ -86,7 +86,8 @@ def spline_optimum(
         insect: one insect (scalar fields) or a name of `INSECTS`.
         problem: a `HoverProblem` or a name of `PROBLEMS` that waveforms serve; problem A where None.
         knots: n.
-        starts: how many, at least 8: sinusoidal, of constant speed, peaked, and random ones that lift.
+        starts: how many, at least 8: sinusoidal, of constant speed, peaked, and random ones that lift,
+            every second of them a short beat.
         guesses: motions of n knots to start from besides.
         seed: of the random starts.
 
@@ -224,7 +225,11 @@ class _Search:
             shape = np.concatenate([np.maximum(floor, 1 + 3 * np.log10(arc)), np.full(n, 0.6)])
         else:
             rng = np.random.default_rng([seed, number])
-            shape = np.concatenate([rng.uniform(-1, 1, n), rng.uniform(0.2, 1, n)])
+            speed = rng.uniform(-1, 1, n)
+            if number % 2:  # a short beat at any time of the half-stroke
+                first = rng.integers(n)
+                speed = np.where((np.arange(n) >= first) & (np.arange(n) <= first + rng.integers(n // 2)), 1.0, floor)
+            shape = np.concatenate([speed, rng.uniform(0.2, 1, n)])
         return np.concatenate([beat, shape])
 
 

@@ -16,7 +16,7 @@ from flapenv.performance import HoverPerformance
 from flapenv.problem import HoverProblem
 from flapenv.waveform.coordinates import Waveform, require_served
 
-PRECISE_POINTS = 14
+PRECISE_POINTS = 12
 """Gauss points a knot interval where the averages count to some eight digits."""
 
 

@@ -130,20 +130,17 @@ def draw_away_from_the_triangle() -> "Figure":
     rows = figure.subplots(3, len(SHOWN), sharex=True, sharey="row")
     for column, name in zip(rows.T, SHOWN, strict=True):
         best = optimum(name, "fixed-frequency")
-        label = "best of (2.1), (2.2)" if best.feasible else "largest lift of (2.1), (2.2)"
-        _draw_motion(column, best.stroke, best.stroke.flap_amplitude, {"color": GREY, "lw": 1.6, "ls": ":"})
-        powers = (
-            f"(2.1), (2.2): {best.specific_power:.1f}"
-            if best.feasible
-            else f"(2.1), (2.2): Λ = {best.weight_support:.2f}"
+        _draw_motion(
+            column, best.stroke, best.stroke.flap_amplitude, {"color": GREY, "lw": 1.6, "ls": ":"}, middle=True
         )
+        power = f"{best.specific_power:.1f} W/kg" if best.feasible else f"lifts {best.weight_support:.2f} of the weight"
         for knots, colour in list(SHADES.items())[:3]:
             motion = best_motion(name, "fixed-frequency", knots)
             line = {"color": colour, "lw": 1.4, "label": f"{knots} knots"}
-            _draw_motion(column, motion, motion.flap_amplitude, line)
+            _draw_motion(column, motion, motion.flap_amplitude, line, middle=True)
         own = evaluate_waveform(name, best_motion(name, "fixed-frequency", 8)).specific_power
-        column[0].set_title(f"{name}\n{powers}; 8 knots: {own:.1f} W/kg", fontsize=8)
-        column[0].plot([], [], color=GREY, lw=1.6, ls=":", label=label)
+        column[0].set_title(f"{name}\n(2.1), (2.2): {power}\n8 knots: {own:.1f} W/kg", fontsize=8)
+        column[0].plot([], [], color=GREY, lw=1.6, ls=":", label="best of (2.1), (2.2)")
         column[-1].set(xlabel="t/T", xlim=(0, 1))
     for axes, label in zip(rows[:, 0], ("φ / φmax", "φ̇ / mean |φ̇|", "θ [°]"), strict=True):
         axes.set_ylabel(label)
@@ -152,10 +149,20 @@ def draw_away_from_the_triangle() -> "Figure":
     return figure
 
 
-def _draw_motion(panels: "np.ndarray | list[Axes]", motion: Motion, amplitude: float, line: dict) -> None:
-    """φ/φmax, φ̇ over its mean and θ over a cycle that begins with the forward half-stroke."""
+def _draw_motion(
+    panels: "np.ndarray | list[Axes]", motion: Motion, amplitude: float, line: dict, *, middle: bool = False
+) -> None:
+    """φ/φmax, φ̇ over its mean and θ over a cycle.
+
+    It begins with the forward half-stroke or, with `middle`, a quarter of a cycle before the wing passes φ = 0: when
+    in a half-stroke a short beat falls makes no difference, so it is put into the middle.
+    """
     time = np.linspace(0, 1, 961)
-    phase = 2 * math.pi * time + (motion.reversal if isinstance(motion, SplineMotion) else -math.pi / 2)
+    start = motion.reversal if isinstance(motion, SplineMotion) else -math.pi / 2
+    if middle:
+        half = start + math.pi * np.linspace(0, 1, 961)
+        start = float(np.interp(0.0, motion.flap_angle(half), half)) - math.pi / 2
+    phase = 2 * math.pi * time + start
     values = (
         motion.flap_angle(phase) / amplitude,
         motion.flap_rate(phase) / motion.mean_flap_speed,

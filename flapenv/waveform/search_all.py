@@ -9,16 +9,16 @@ from flapenv.aero.spline_motion import SplineMotion
 from flapenv.aero.splines import refined
 from flapenv.case import hover_case
 from flapenv.insects import INSECTS, load_insect
+from flapenv.optimum import optimum
 from flapenv.problem import PROBLEMS
 from flapenv.waveform.coordinates import SPEED_FLOOR
 from flapenv.waveform.optimum import SplineOptimum, spline_optimum
 from flapenv.waveform.shipped import COLUMNS, wants
 
-KNOTS = (4, 8, 16, 32)
-"""Numbers of knots a half-cycle that are searched, each twice the one before."""
 SEARCHES = {"free-frequency": INSECTS[:1], "fixed-frequency": INSECTS, "profile-drag": INSECTS}
 """The insects whose waveforms are searched; with f free and no profile drag one serves all."""
-STARTS = 16
+STARTS = {4: 48, 8: 32, 16: 16, 32: 8}
+"""Starts by the number of knots a half-cycle, each twice the one before."""
 UNBOUND = 1e-4
 """With f free and inside its bounds dP*/dΛ is 1.5 P*; a waveform that misses this by more serves no other wing."""
 
@@ -36,15 +36,21 @@ def refined_motion(motion: SplineMotion) -> SplineMotion:
 
 
 def search_all() -> list[tuple[str, SplineOptimum]]:
-    """The best waveform of every problem, insect and number of knots, each from that of half the knots besides."""
+    """The best waveform of every problem, insect and number of knots.
+
+    Each search also starts from the best waveform of half the knots, and from that of the insect before, in the order
+    of the lift they need: power has many local minima where f is fixed.
+    """
     found = []
     for problem, insects in SEARCHES.items():
-        for insect in insects:
-            guesses: tuple[SplineMotion, ...] = ()
-            for knots in KNOTS:
-                best = spline_optimum(insect, problem, knots=knots, starts=STARTS, guesses=guesses)
+        coarser: dict[str, SplineMotion] = {}
+        for knots, starts in STARTS.items():
+            before: tuple[SplineMotion, ...] = ()
+            for insect in sorted(insects, key=lambda name: -optimum(name, problem).max_weight_support):
+                guesses = before + ((coarser[insect],) if insect in coarser else ())
+                best = spline_optimum(insect, problem, knots=knots, starts=starts, guesses=guesses)
                 found.append((problem, best))
-                guesses = (refined_motion(best.motion),)
+                coarser[insect], before = refined_motion(best.motion), (best.motion,)
     return found
 
 
