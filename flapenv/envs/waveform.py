@@ -9,6 +9,7 @@ from gymnasium.vector import AutoresetMode
 from flapenv.aero.checks import require_flag, require_name
 from flapenv.aero.parameters import StrokeReference
 from flapenv.aero.spline_motion import SplineMotion
+from flapenv.case import hover_case, stack_cases
 from flapenv.envs.batch import BatchEnv, Info, refuse_unknown
 from flapenv.envs.describe import ACTION_HEADER, Row, described, markdown_table, stroke_rows
 from flapenv.envs.hover import AMPLITUDE_0, AMPLITUDE_1, DEFAULT_PROBLEM, NOT_YET, OBSERVATION_LIMIT, ProblemChoice
@@ -18,6 +19,7 @@ from flapenv.insects import Insect
 from flapenv.performance import yardstick
 from flapenv.problem import HoverProblem, as_problem
 from flapenv.waveform.coordinates import SPEED_FLOOR, Waveform, WaveformCoordinates
+from flapenv.waveform.largest_lift import largest_weight_support
 from flapenv.waveform.objective import WaveformObjective, WaveformScore
 from flapenv.waveform.performance import peak_rates
 
@@ -100,7 +102,8 @@ class WaveformVectorEnv(BatchEnv):
         insects = named_insects(choice)
         for one in insects:
             self.problem.require_suitable(one.name, one.reference)
-        largest = WaveformObjective(insects, self.problem, self.coordinates, np.float64).largest_weight_support
+        cases = stack_cases([hover_case(one, self.problem.model) for one in insects])
+        largest = largest_weight_support(cases, self.problem, self.coordinates)
         margins = {one.name: float(most) for one, most in zip(insects, largest, strict=True) if most < 1}
         dropped = choice == "all" and not include_infeasible
         return without_infeasible(insects, margins, "waveform", dropped=dropped, stacklevel=4)
@@ -193,7 +196,7 @@ def _action_rows(knots: int) -> list[Row]:
     first, middle, last = len(names), len(names) + knots, len(coordinates)
     return [
         *beat,
-        (f"{first} - {middle - 1}", "coefficients of the speed", "w_j", "-", f"{SPEED_FLOOR:g}", "1", "log"),
+        (f"{first} - {middle - 1}", "coefficients of the speed", "w_j", "-", f"{SPEED_FLOOR:g}", "1", "linear"),
         (f"{middle} - {last - 1}", "coefficients of the pitch", "θ_j", "rad", f"-{limit:g}°", f"{limit:g}°", "linear"),
     ]
 

@@ -1,6 +1,5 @@
 """Action coordinates of free waveforms: points of the cube [-1, 1]^m, shared by the environment and its optimiser."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,9 +42,9 @@ class WaveformCoordinates:
     """The map from the cube to the waveforms of a problem: first f and φmax where free, then n speeds, then n pitches.
 
     f and φmax run as in `StrokeCoordinates` (tip speed q = f φmax on a log scale, then φmax), each speed coefficient
-    on a log scale from `SPEED_FLOOR` to 1, since only ratios count and thus any two speeds are as far apart as their
-    ratio; each pitch coefficient linearly over ± the largest pitch angle. Of the problem's box only the bounds of f
-    and φmax and the upper bound of the pitch amplitude have a meaning here.
+    linearly from `SPEED_FLOOR` to 1, each pitch coefficient linearly over ± the largest pitch angle. (On a log scale
+    learners fell for speeds at the floor, where no pitch is felt any more; docs/waveform.md.) Of the problem's box only
+    the bounds of f and φmax and the upper bound of the pitch amplitude have a meaning here.
     """
 
     def __init__(self, problem: HoverProblem, knots: int) -> None:
@@ -95,8 +94,7 @@ class WaveformCoordinates:
         beat, clipped = self.beat.decode(points[..., :head], reference)
         shape = xp.clip(points[..., head:], -1, 1)
         clipped = clipped | xp.any(shape != points[..., head:], axis=-1)
-        rise = -math.log(SPEED_FLOOR) / 2
-        speed = xp.exp(rise * shape[..., : self.knots] - rise)
+        speed = (1 + SPEED_FLOOR) / 2 + (1 - SPEED_FLOOR) / 2 * shape[..., : self.knots]
         pitch = self.pitch_limit * shape[..., self.knots :]
         return Waveform(beat["frequency"], beat["flap_amplitude"], speed, pitch), clipped
 
@@ -111,8 +109,8 @@ class WaveformCoordinates:
             Points, shape (..., m), clipped to the cube.
         """
         speed, pitch = (np.asarray(value, dtype=float) for value in waveform[2:])
-        relative = np.log(speed / np.max(speed, axis=-1, keepdims=True)) / -math.log(SPEED_FLOOR)
-        axes = [np.clip(1 + 2 * relative, -1, 1), np.clip(pitch / self.pitch_limit, -1, 1)]
+        missing = 1 - speed / np.max(speed, axis=-1, keepdims=True)
+        axes = [np.clip(1 - 2 * missing / (1 - SPEED_FLOOR), -1, 1), np.clip(pitch / self.pitch_limit, -1, 1)]
         if len(self.beat):
             values = {"frequency": waveform.frequency, "flap_amplitude": waveform.flap_amplitude}
             head = self.beat.encode(values, reference)

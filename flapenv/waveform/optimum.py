@@ -218,11 +218,11 @@ class _Search:
         floor = np.full(n, -1.0)
         beat = np.full(head, 0.5)
         if number == 0:
-            shape = np.concatenate([1 + np.log10(arc), 0.8 * arc])
+            shape = np.concatenate([2 * arc - 1, 0.8 * arc])
         elif number == 1:
             shape = np.concatenate([np.zeros(n), np.full(n, 0.8)])
         elif number == 2:
-            shape = np.concatenate([np.maximum(floor, 1 + 3 * np.log10(arc)), np.full(n, 0.6)])
+            shape = np.concatenate([2 * arc**3 - 1, np.full(n, 0.6)])
         else:
             rng = np.random.default_rng([seed, number])
             speed = rng.uniform(-1, 1, n)
