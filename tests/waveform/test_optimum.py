@@ -39,7 +39,8 @@ def test_a_search_finds_the_shipped_waveforms_power_again_and_no_less(insect: st
     assert best.feasible
     assert best.starts >= 8
     assert best.weight_support == pytest.approx(1, abs=1e-6)
-    assert best.specific_power == pytest.approx(known_power(insect, problem, knots), rel=1e-3)
+    near = 1e-5 if problem != "fixed-frequency" else 1e-2  # where f is fixed there are many local minima
+    assert best.specific_power == pytest.approx(known_power(insect, problem, knots), rel=near)
     assert best.specific_power > known_power(insect, problem, knots) * (1 - 1e-5)
     assert best.specific_power > best.lower_bound
     if problem == "free-frequency":
