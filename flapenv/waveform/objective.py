@@ -1,5 +1,6 @@
 """The reward and the gaps of free waveforms: the exact-penalty objective of `flapenv.objective`, for splines."""
 
+import warnings
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -79,6 +80,13 @@ class WaveformObjective:
         auto = np.where((self.largest_weight_support < 1) | ~np.isfinite(auto), INFEASIBLE_PENALTY, auto)
         wanted = problem.lift_penalty
         self.lift_penalty = auto if isinstance(wanted, str) else np.full(len(single), wanted)
+        for insect, relative, own in zip(insects, multiplier / self.bound, self.lift_penalty, strict=True):
+            if own < relative:
+                warnings.warn(
+                    f"lift_penalty = {own:g} is below the multiplier {relative:.3g} of {insect.name}: the reward's "
+                    "optimum will not carry the weight",
+                    stacklevel=4,
+                )
         reference = {
             "bound": self.bound,
             "optimum": power,

@@ -131,6 +131,8 @@ def test_the_penalty_is_twice_the_multiplier_of_the_best_waveform_and_at_least_t
     assert between.objective.known == (None,) * 8
     assert between.objective.lift_penalty == pytest.approx(env.objective.lift_penalty)
     assert WaveformVectorEnv(1, problem={"lift_penalty": 4.0}).objective.lift_penalty == pytest.approx(4)
+    with pytest.warns(UserWarning, match=r"lift_penalty = 0.5 is below the multiplier 1\.65 of hawkmoth"):
+        WaveformVectorEnv(1, insect="hawkmoth", problem={"lift_penalty": 0.5})
     wide = {"box": {"pitch_amplitude": (0.5, 1.2)}}
     assert WaveformVectorEnv(1, problem=wide).objective.lift_penalty == pytest.approx(10)
 
