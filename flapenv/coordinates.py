@@ -76,7 +76,7 @@ class StrokeCoordinates:
         values: dict[str, Any] = {}
         for name, (low, high) in bounds.items():
             if name not in self.names:
-                values[name] = xp.full_like(inside[..., 0], low)
+                values[name] = as_like(points, np.full(points.shape[:-1], low, dtype))[0]
                 continue
             value = self.axes[name].value((inside[..., self.names.index(name)] + 1) / 2, xp)
             values[name] = value if name == "frequency" and self._uses_tip_speed else xp.clip(value, low, high)

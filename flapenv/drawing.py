@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flapenv.aero.history import WingbeatHistory
+from flapenv.aero.motions import Motion
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.insects import Insect
@@ -74,12 +75,12 @@ def draw_wingbeat(insect: Insect, stroke: Stroke, model: HoverModel | None = Non
     )
     draw_wing_sections(figure.add_subplot(grid[0, :]), insect, stroke)
     time = history.phase / (2 * math.pi)
-    _draw_angles(figure.add_subplot(grid[1, 0]), time, history)
+    draw_angles(figure.add_subplot(grid[1, 0]), time, history)
     weight = insect.mass * model.gravity
-    _draw_history(
+    draw_history(
         figure.add_subplot(grid[1, 1]), time, history.lift / weight, performance.weight_support, BLUE, "lift / weight"
     )
-    _draw_history(
+    draw_history(
         figure.add_subplot(grid[1, 2]),
         time,
         history.power / insect.mass,
@@ -90,7 +91,7 @@ def draw_wingbeat(insect: Insect, stroke: Stroke, model: HoverModel | None = Non
     return figure
 
 
-def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Stroke) -> None:
+def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Motion) -> None:
     """Wing sections at equal times along both half-strokes, to scale at r̂₂ R, turned about its pitching axis."""
     radius = math.sqrt(insect.wing.moment(2)) * insect.wing.aspect_ratio  # in mean chords
     for start, level, colour, label in (
@@ -116,7 +117,7 @@ def draw_wing_sections(axes: "Axes", insect: Insect, stroke: Stroke) -> None:
     axes.set_aspect("equal")
 
 
-def _draw_angles(axes: "Axes", time: np.ndarray, history: WingbeatHistory) -> None:
+def draw_angles(axes: "Axes", time: np.ndarray, history: WingbeatHistory) -> None:
     """φ, θ and α over the cycle."""
     for angle, colour, dash, label in (
         (history.kinematics.flap, BLUE, "-", "φ flap"),
@@ -129,7 +130,7 @@ def _draw_angles(axes: "Axes", time: np.ndarray, history: WingbeatHistory) -> No
     axes.legend(ncols=3, fontsize=7, loc="upper center", frameon=False, columnspacing=1, handlelength=1.8)
 
 
-def _draw_history(axes: "Axes", time: np.ndarray, value: np.ndarray, mean: float, colour: str, label: str) -> None:
+def draw_history(axes: "Axes", time: np.ndarray, value: np.ndarray, mean: float, colour: str, label: str) -> None:
     """One quantity over the cycle with its mean."""
     axes.plot(time, value, color=colour)
     axes.axhline(mean, color=GREY, lw=1, ls="--", label=f"mean {mean:.3f}" if mean < 10 else f"mean {mean:.2f}")

@@ -6,6 +6,8 @@ from flapenv.aero.history import TermHistory, WingbeatHistory
 from flapenv.aero.motions import FourierMotion, Motion, SampledMotion
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeParameter
 from flapenv.aero.planform import BetaPlanform, FunctionPlanform, TabulatedPlanform
+from flapenv.aero.spline_motion import SplineMotion
+from flapenv.aero.splines import SplineAverages, spline_averages
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.aero.wingbeat import TimeRule, speed_averages, time_rule
@@ -23,6 +25,8 @@ __all__ = [
     "PlateLaw",
     "PolhamusLaw",
     "SampledMotion",
+    "SplineAverages",
+    "SplineMotion",
     "Stroke",
     "StrokeParameter",
     "TabulatedPlanform",
@@ -32,5 +36,6 @@ __all__ = [
     "WingbeatHistory",
     "blade_element",
     "speed_averages",
+    "spline_averages",
     "time_rule",
 ]

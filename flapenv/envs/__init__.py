@@ -5,6 +5,7 @@ from flapenv.envs.hover import HoverEnv
 from flapenv.envs.hover_adapt import HoverAdaptEnv, HoverAdaptVectorEnv
 from flapenv.envs.hover_batch import HoverVectorEnv
 from flapenv.envs.registration import ENV_IDS, register_envs
+from flapenv.envs.waveform import WaveformEnv, WaveformVectorEnv
 
 __all__ = [
     "ENV_IDS",
@@ -14,5 +15,7 @@ __all__ = [
     "HoverAdaptVectorEnv",
     "HoverEnv",
     "HoverVectorEnv",
+    "WaveformEnv",
+    "WaveformVectorEnv",
     "register_envs",
 ]

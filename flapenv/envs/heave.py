@@ -15,11 +15,11 @@ from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import action_table, described, markdown_table, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
 from flapenv.envs.single import SingleEnv
+from flapenv.envs.wing_features import OBSERVATION_LIMIT
 from flapenv.heave.dynamics import HeaveBeat, HeaveDynamics
 from flapenv.heave.gusts import EpisodeStreams, GustModel, Place, as_gusts
 from flapenv.heave.trim import BOX
 
-OBSERVATION_LIMIT = 5.0
 HEIGHT_LIMIT = 5.0
 """An episode ends at this height above or below the start's middle [wing lengths]."""
 VELOCITY_LIMIT = 0.5

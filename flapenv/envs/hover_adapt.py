@@ -11,7 +11,7 @@ from flapenv.adapt.company import Company
 from flapenv.adapt.conditions import NOMINAL, Condition
 from flapenv.adapt.ladder import BOX
 from flapenv.adapt.references import COORDINATES
-from flapenv.adapt.task import BEATS, LEAST_MARGIN, NOISE, AdaptTask, Draws, Flight, choose
+from flapenv.adapt.task import BEATS, LEAST_MARGIN, NOISE, PROBLEM, AdaptTask, Draws, Flight, choose
 from flapenv.adapt.tuning import NAMES, shipped, tuned_for
 from flapenv.aero.checks import require_count, require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
@@ -20,10 +20,10 @@ from flapenv.envs.describe import action_table, described, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
 from flapenv.envs.last_beat import LastBeat
 from flapenv.envs.single import SingleEnv
+from flapenv.envs.wing_features import OBSERVATION_LIMIT, wing_features
 from flapenv.objective import LEAST_GAP_WEIGHT, QUADRATURE_TOLERANCE
-from flapenv.performance import hover_averages, yardstick
+from flapenv.performance import hover_averages
 
-OBSERVATION_LIMIT = 5.0
 MEMORY = 4
 """Beats that are observed."""
 TRACES = 4
@@ -97,14 +97,12 @@ class HoverAdaptVectorEnv(BatchEnv):
         self._rule = BOX.time_rule(tolerance=QUADRATURE_TOLERANCE)
 
         nominal = self.task.table.nominal
-        weight_support, self._felt_power = yardstick(nominal, self.task.model)
         r1_hat = np.array([one.wing.r1_hat for one in self.insects])
-        features = nominal.aspect_ratio - 4, (r1_hat - 0.51) / 0.04, np.log(weight_support)
-        self._features = np.stack(features, axis=-1).astype(np.float32)
+        self._features, self._felt_power = wing_features(nominal, r1_hat, PROBLEM)
         self._names = np.array([one.name for one in self.insects], dtype=object)
 
         axes = len(self.coordinates)
-        seen = len(features) + MEMORY * (2 + axes) + 1
+        seen = self._features.shape[1] + MEMORY * (2 + axes) + 1
         super().__init__(
             num_envs,
             single_observation_space=spaces.Box(-OBSERVATION_LIMIT, OBSERVATION_LIMIT, (seen,), np.float32),

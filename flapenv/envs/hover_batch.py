@@ -16,19 +16,16 @@ from flapenv.coordinates import Scaling, StrokeCoordinates
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown, refuse_unused
 from flapenv.envs.hover_of_one import HoverOfOne
 from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool, chosen_rows
+from flapenv.envs.wing_features import OBSERVATION_LIMIT, seen, wing_features
 from flapenv.insects import Insect
 from flapenv.objective import HoverObjective, Score
-from flapenv.performance import yardstick
-from flapenv.problem import PROBLEMS, HoverProblem, StrokeBox, as_problem
+from flapenv.problem import PROBLEMS, HoverProblem, as_problem
 from flapenv.references import GapTo
 from flapenv.wing_pool import Split
 
 ProblemChoice = str | HoverProblem | Mapping[str, Any]
-OBSERVATION_LIMIT = LIMIT = 5.0
 SMALLEST_POWER = 1e-30
 """Stands in for no power at all where its logarithm is felt [W/kg]."""
-AMPLITUDE_0, AMPLITUDE_1 = math.radians(67.5), math.radians(22.5)
-"""Middle and half-range of the observed bound of φmax [rad]."""
 NOT_YET = -1
 FIRST_FELT = (0.0, 0.0, 1.0)
 """Last Λ - 1, last log P*/P*_felt and fraction of the episode left, at the start."""
@@ -133,12 +130,7 @@ class HoverVectorEnv(BatchEnv):
         self.flyers, self.accelerator = self.objective.flyers, accelerator
 
         cases = self.objective.cases
-        weight_support, felt_power = yardstick(cases, self.problem.model)
-        if not np.all(weight_support > 0):
-            raise ValueError("coefficients lift nothing at an angle of attack of 35°; allowed: a lift to fly on")
-        features = [cases.aspect_ratio - 4, (self.flyers.r1_hat - 0.51) / 0.04, np.log(weight_support)]
-        features += _varying_bounds(self.problem.box, cases.reference)
-        self._features = _seen(np.stack(features, axis=-1))
+        self._features, felt_power = wing_features(cases, self.flyers.r1_hat, self.problem)
         start = np.tile(np.array(FIRST_FELT, dtype=np.float32), (len(self.flyers), 1))
         self._first_seen = np.concatenate([self._features, start], axis=1)
         self._felt_power = felt_power.astype(self.dtype)
@@ -147,7 +139,7 @@ class HoverVectorEnv(BatchEnv):
         super().__init__(
             num_envs,
             single_observation_space=spaces.Box(
-                -OBSERVATION_LIMIT, OBSERVATION_LIMIT, (len(features) + 3,), np.float32
+                -OBSERVATION_LIMIT, OBSERVATION_LIMIT, (self._features.shape[1] + 3,), np.float32
             ),
             single_action_space=spaces.Box(-1.0, 1.0, (len(self.coordinates),), np.float32),
             autoreset_mode=autoreset_mode,
@@ -177,7 +169,7 @@ class HoverVectorEnv(BatchEnv):
         felt = score.weight_support - 1, np.log(power / self._felt_power[self._insect])
         rows = slice(None) if mask.all() else mask
         for column, value in enumerate(felt):
-            self._felt[rows, column] = _seen(value)[rows]
+            self._felt[rows, column] = seen(value)[rows]
         self._felt[rows, -1] = 0.0
         for name, value in strokes.items():
             self._stroke[name] = value if mask.all() else np.where(mask, value, self._stroke[name])
@@ -211,10 +203,11 @@ class HoverVectorEnv(BatchEnv):
         for value, column in zip(results, self._stroke.values(), strict=False):
             column[0] = value
         ratio = max(power, SMALLEST_POWER) / self._felt_power.item(number)
-        felt = max(min(weight_support - 1, LIMIT), -LIMIT), max(min(math.log(ratio), LIMIT), -LIMIT), 0.0
+        low, high = -OBSERVATION_LIMIT, OBSERVATION_LIMIT
+        felt = max(min(weight_support - 1, high), low), max(min(math.log(ratio), high), low), 0.0
         self._felt[0] = felt
-        seen = self._first_seen[number].copy()
-        seen[-3:] = felt
+        observation = self._first_seen[number].copy()
+        observation[-3:] = felt
         floor = self.problem.reward_floor
         reward: Any = max(power_term + lift_term, floor)
         if self.reward_space is not None:
@@ -225,7 +218,7 @@ class HoverVectorEnv(BatchEnv):
         info: Info = dict(zip(self.info_keys, values, strict=True))
         if self.unwanted:
             info = {key: value for key, value in info.items() if key not in self.unwanted}
-        return seen, reward, True, False, info
+        return observation, reward, True, False, info
 
     def _info(self, score: Score, strokes: dict[str, np.ndarray], clipped: np.ndarray) -> Info:
         return {
@@ -266,20 +259,3 @@ class HoverVectorEnv(BatchEnv):
             return insect, insect.stroke
         values = {name: float(value[row]) for name, value in self._stroke.items()}
         return self.flyers[int(self._beaten[row])], Stroke(**values)
-
-
-def _varying_bounds(box: StrokeBox, reference: StrokeReference) -> list[np.ndarray]:
-    """Bounds that differ from wing to wing in the units of an action; a fixed parameter has one."""
-    seen = []
-    if not box.is_relative("frequency"):  # the same in Hz is another multiple of every wing's own
-        ends = box.bounds("frequency", reference)
-        seen += [np.log(end / reference.frequency) for end in ends[: 1 + box.is_free("frequency")]]
-    if box.is_relative("flap_amplitude"):
-        ends = box.bounds("flap_amplitude", reference)
-        seen += [(end - AMPLITUDE_0) / AMPLITUDE_1 for end in ends[: 1 + box.is_free("flap_amplitude")]]
-    return seen
-
-
-def _seen(values: np.ndarray) -> np.ndarray:
-    """Values as an observation shows them."""
-    return np.clip(values, -OBSERVATION_LIMIT, OBSERVATION_LIMIT).astype(np.float32, copy=False)

@@ -54,7 +54,7 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
     """The insects an environment draws from, with a warning about every one that cannot hover in the box.
 
     Args:
-        choice: "all", a name of `INSECTS`, an `Insect` or the dict of one, or several of these.
+        choice: as `listed_insects` takes it.
         problem: the problem, which decides about feasibility.
         include_infeasible: whether "all" keeps the insects that no stroke of the box can lift.
 
@@ -63,14 +63,31 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
         ValueError: for an unknown name, no insect at all, or "all" where none is feasible.
     """
     insects = listed_insects(choice, others=(RANDOM_WING,))
-    everyone = isinstance(choice, str) and choice == "all"
-    infeasible = {insect.name: optimum(insect, problem) for insect in insects}
-    infeasible = {name: best for name, best in infeasible.items() if not best.feasible}
+    largest = {insect.name: optimum(insect, problem) for insect in insects}
+    infeasible = {name: best.max_weight_support for name, best in largest.items() if not best.feasible}
+    dropped = isinstance(choice, str) and choice == "all" and not include_infeasible
+    return without_infeasible(insects, infeasible, "stroke of the box", dropped=dropped, stacklevel=4)
+
+
+def without_infeasible(
+    insects: tuple[Insect, ...], infeasible: Mapping[str, float], what: str, *, dropped: bool, stacklevel: int
+) -> tuple[Insect, ...]:
+    """Warn about the insects that cannot hover, and leave them out where they are to be dropped.
+
+    Args:
+        insects: all of them.
+        infeasible: the largest weight support of those that cannot, by name.
+        what: does not carry their weight, in words.
+        dropped: whether they are left out.
+        stacklevel: of the warning, as the caller's own.
+
+    Raises:
+        ValueError: where none is left.
+    """
     if infeasible:
-        margins = ", ".join(f"{name} (largest {best.max_weight_support:.3f})" for name, best in infeasible.items())
-        dropped = everyone and not include_infeasible
+        margins = ", ".join(f"{name} (largest {margin:.3f})" for name, margin in infeasible.items())
         fate = "left out" if dropped else "kept; the aim is their largest weight support"
-        warnings.warn(f"no stroke of the box carries the weight of {margins}: {fate}", stacklevel=3)
+        warnings.warn(f"no {what} carries the weight of {margins}: {fate}", stacklevel=stacklevel)
         if dropped:
             insects = tuple(insect for insect in insects if insect.name not in infeasible)
     if not insects:

@@ -5,6 +5,7 @@ import gymnasium as gym
 _ENTRY_POINTS = {
     "flapenv/Hover-v0": ("hover:HoverEnv", "hover_batch:HoverVectorEnv"),
     "flapenv/HoverAdapt-v0": ("hover_adapt:HoverAdaptEnv", "hover_adapt:HoverAdaptVectorEnv"),
+    "flapenv/Waveform-v0": ("waveform:WaveformEnv", "waveform:WaveformVectorEnv"),
     "flapenv/Heave-v0": ("heave:HeaveEnv", "heave:HeaveVectorEnv"),
 }
 ENV_IDS: tuple[str, ...] = tuple(_ENTRY_POINTS)
