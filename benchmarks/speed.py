@@ -30,6 +30,8 @@ from flapenv.tables import text_table
 
 SECONDS, REPETITIONS = 0.7, 3
 ROWS, MANY, MILLION = 4096, 100_000, 1_000_000
+HOVERING = (0.4, 1, 1, 1, 0)
+"""The action of Heave-v0 that holds height in still air."""
 
 
 def baseline() -> None:
@@ -82,13 +84,25 @@ def fast_path(rows: int, accelerator: Accelerator = "numpy") -> tuple[Callable[[
     return work, error
 
 
-def stepping(name: str, rows: int = ROWS, **arguments: Any) -> Callable[[], object]:
-    """Steps of a vector environment with one random action a row."""
+def stepping(name: str, rows: int = ROWS, actions: Any = None, **arguments: Any) -> Callable[[], object]:
+    """Steps of a vector environment with given actions, or a random one for each row."""
     batch = gym.make_vec(name, num_envs=rows, autoreset_mode="SAME_STEP", **arguments)
     batch.reset(seed=0)
     batch.action_space.seed(0)
-    actions = batch.action_space.sample()
+    actions = batch.action_space.sample() if actions is None else np.tile(np.float32(actions), (rows, 1))
     return lambda: batch.step(actions)
+
+
+def resetting_and_stepping(**arguments: Any) -> Callable[[], object]:
+    """An episode of the scalar Hover-v0."""
+    env = gym.make("flapenv/Hover-v0", **arguments)
+    action = np.random.default_rng(0).uniform(-1, 1, 6).astype(np.float32)
+
+    def episode() -> None:
+        env.reset()
+        env.step(action)
+
+    return episode
 
 
 def cases() -> list[tuple[str, Callable[[], object], int]]:
@@ -99,12 +113,6 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
     few, error = fast_path(ROWS)
     compiled, own_error = fast_path(ROWS, "numba")
     many, million = fast_path(MANY)[0], fast_path(MILLION)[0]
-    single = gym.make("flapenv/Hover-v0")
-    action = points[0].astype(np.float32)
-
-    def beat_single() -> None:
-        single.reset()
-        single.step(action)
 
     return [
         ("baseline: 50 x 500 in NumPy, pasted", baseline, 1),
@@ -118,7 +126,11 @@ def cases() -> list[tuple[str, Callable[[], object], int]]:
         (f"Hover-v0, {ROWS:,} rows, step with infos", stepping("flapenv/Hover-v0"), ROWS),
         (f"Hover-v0, {ROWS:,} rows, step without infos", stepping("flapenv/Hover-v0", infos="none"), ROWS),
         (f"Hover-v0, {ROWS:,} rows, numba", stepping("flapenv/Hover-v0", accelerator="numba"), ROWS),
-        ("Hover-v0, gym.make, reset and step", beat_single, 1),
+        (f"HoverAdapt-v0, {ROWS:,} rows, step with infos", stepping("flapenv/HoverAdapt-v0"), ROWS),
+        (f"Waveform-v0, {ROWS:,} rows, step with infos", stepping("flapenv/Waveform-v0"), ROWS),
+        (f"Heave-v0, {ROWS:,} rows, step with infos", stepping("flapenv/Heave-v0", actions=HOVERING), ROWS),
+        ("Hover-v0, gym.make, reset and step", resetting_and_stepping(), 1),
+        ("Hover-v0, gym.make, reset and step, numba", resetting_and_stepping(accelerator="numba"), 1),
     ]
 
 

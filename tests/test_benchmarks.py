@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks import speed, waveform
+from benchmarks import profile, speed
 
 
 def test_every_case_runs_and_the_table_has_both_ratios(
@@ -13,16 +13,25 @@ def test_every_case_runs_and_the_table_has_both_ratios(
     monkeypatch.setattr(speed, "MILLION", 200_000)
     speed.main()
     out = capsys.readouterr().out
-    for word in ("baseline", "oracle", "fast path", "two threads", "Hover-v0", "gym.make", "x baseline", "x oracle"):
+    for word in (
+        "baseline",
+        "oracle",
+        "fast path",
+        "two threads",
+        "Hover-v0",
+        "Waveform-v0",
+        "Heave-v0",
+        "gym.make",
+        "x oracle",
+    ):
         assert word in out
 
 
-def test_the_cases_of_free_waveforms_run_beside_the_baseline(
+def test_the_profile_has_the_floor_and_the_parts_of_a_step(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(speed, "SECONDS", 1e-3)
-    monkeypatch.setattr(speed, "REPETITIONS", 1)
-    waveform.main()
+    monkeypatch.setattr(profile, "REPETITIONS", 1)
+    profile.main()
     out = capsys.readouterr().out
-    for word in ("baseline", "free waveforms", "Waveform vector env", "gym.make", "x baseline"):
+    for word in ("floor", "sin", "tanh", "numba", "actions to strokes", "in all"):
         assert word in out
