@@ -171,8 +171,9 @@ class HoverVectorEnv(BatchEnv):
         for column, value in enumerate(felt):
             self._felt[rows, column] = seen(value)[rows]
         self._felt[rows, -1] = 0.0
-        for name, value in strokes.items():
-            self._stroke[name] = value if mask.all() else np.where(mask, value, self._stroke[name])
+        if self.render_mode is not None:
+            for name, value in strokes.items():
+                np.copyto(self._stroke[name], value, where=mask)
         self._beaten = np.where(mask, self._insect, self._beaten)
         reward = score.reward
         if self.reward_space is not None:
