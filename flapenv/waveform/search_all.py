@@ -13,7 +13,7 @@ from flapenv.optimum import optimum
 from flapenv.problem import PROBLEMS
 from flapenv.waveform.coordinates import SPEED_FLOOR
 from flapenv.waveform.optimum import SplineOptimum, spline_optimum
-from flapenv.waveform.shipped import COLUMNS, wants
+from flapenv.waveform.shipped import COLUMNS, known_optimum, wants
 
 SEARCHES = {"free-frequency": INSECTS[:1], "fixed-frequency": INSECTS, "profile-drag": INSECTS}
 """The insects whose waveforms are searched; with f free and no profile drag one serves all."""
@@ -38,8 +38,9 @@ def refined_motion(motion: SplineMotion) -> SplineMotion:
 def search_all() -> list[tuple[str, SplineOptimum]]:
     """The best waveform of every problem, insect and number of knots.
 
-    Each search also starts from the best waveform of half the knots, and from that of the insect before, in the order
-    of the lift they need: power has many local minima where f is fixed.
+    Each search also starts from the best waveform of half the knots, from that of the insect before, in the order of
+    the lift they need, and from the one that is shipped, so that searching again never loses: power has many local
+    minima where f is fixed.
     """
     found = []
     for problem, insects in SEARCHES.items():
@@ -47,11 +48,18 @@ def search_all() -> list[tuple[str, SplineOptimum]]:
         for knots, starts in STARTS.items():
             before: tuple[SplineMotion, ...] = ()
             for insect in sorted(insects, key=lambda name: -optimum(name, problem).max_weight_support):
-                guesses = before + ((coarser[insect],) if insect in coarser else ())
+                guesses = before + ((coarser[insect],) if insect in coarser else ()) + _shipped(problem, insect, knots)
                 best = spline_optimum(insect, problem, knots=knots, starts=starts, guesses=guesses)
                 found.append((problem, best))
                 coarser[insect], before = refined_motion(best.motion), (best.motion,)
     return found
+
+
+def _shipped(problem: str, insect: str, knots: int) -> tuple[SplineMotion, ...]:
+    """The waveform that the present table has, if any."""
+    case = hover_case(load_insect(insect), PROBLEMS[problem].model)
+    known = known_optimum(case, PROBLEMS[problem], knots)
+    return () if known is None else (known.waveform.motion(),)
 
 
 def write_table(path: Path) -> None:
