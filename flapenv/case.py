@@ -58,6 +58,15 @@ class HoverCase:
         """What boxes may be relative to."""
         return StrokeReference(self.reference_frequency, self.reference_amplitude)
 
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of all that enters Λ and P*; the own stroke, which does not, may have another."""
+        shapes = []
+        for name, value in vars(self).items():
+            if name not in ("reference_frequency", "reference_amplitude"):
+                shapes.append(np.shape(value)[:-1] if name in TRAILING else np.shape(value))
+        return np.broadcast_shapes(*shapes)
+
     def spread(self, shape: tuple[int, ...]) -> "HoverCase":
         """The case with every field broadcast to a shape and its axes made one; trailing axes stay."""
         count = math.prod(shape)

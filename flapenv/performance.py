@@ -1,5 +1,6 @@
 """Weight support and specific power of a stroke: the physics applied to an insect under stated model options."""
 
+import dataclasses
 import itertools
 import math
 from typing import Any
@@ -90,13 +91,13 @@ def hover_averages(
     }
     if any(is_tensor(value) for value in (*stroke.values(), *vars(case).values())):
         return _averages(case, model, stroke, rule, kernel)
-    shape = np.broadcast_shapes(*(np.shape(value) for value in stroke.values()), np.shape(case.lift_scale))
+    shape = np.broadcast_shapes(*(np.shape(value) for value in stroke.values()), case.shape)
     count, largest = math.prod(shape), PAID_PART if model.accounting == "positive" else PART
     parts = max(math.ceil(count / largest), min(threads, count // LEAST_PART))
     if parts <= 1:
         return _averages(case, model, stroke, rule, kernel)
     rows = {name: np.broadcast_to(value, shape).reshape(-1) for name, value in stroke.items()}
-    every = case.spread(shape)
+    every = dataclasses.replace(case, reference_frequency=0.0, reference_amplitude=0.0).spread(shape)
     results = np.empty((2, count), np.result_type(*rows.values(), case.lift_scale))
 
     def work(part: slice) -> None:

@@ -37,7 +37,9 @@ def crowded_rule(nodes: int, crowding: float) -> tuple[np.ndarray, np.ndarray]:
     """
     x, weights = np.polynomial.legendre.leggauss(nodes)
     points = np.sinh(crowding * (1 + x)) / (2 * np.sinh(crowding) * np.cosh(crowding * x))
-    return points, weights * crowding / (2 * math.tanh(crowding) * np.cosh(crowding * x) ** 2)
+    weights = weights * crowding / (2 * math.tanh(crowding) * np.cosh(crowding * x) ** 2)
+    points.flags.writeable = weights.flags.writeable = False  # they are kept
+    return points, weights
 
 
 def gauss_rule(points: np.ndarray, weights: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:

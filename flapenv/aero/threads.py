@@ -1,6 +1,7 @@
 """Work on several threads: NumPy lets other threads run while it computes on large arrays."""
 
 import functools
+import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
@@ -9,6 +10,10 @@ from concurrent.futures import ThreadPoolExecutor
 def _pool(threads: int) -> ThreadPoolExecutor:
     """A pool that is kept; its threads start when first needed."""
     return ThreadPoolExecutor(threads, thread_name_prefix="flapenv")
+
+
+if hasattr(os, "register_at_fork"):  # a forked process inherits the pool but not its threads
+    os.register_at_fork(after_in_child=_pool.cache_clear)
 
 
 def in_threads(work: Callable[[slice], None], parts: Sequence[slice], threads: int) -> None:

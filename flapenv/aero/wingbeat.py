@@ -59,8 +59,9 @@ def time_rule(flap_shape: Real, pitch_shape: Real, *, tolerance: float = 1e-9) -
     tolerance are not resolved, as they carry less than it, nor those thinner than `THINNEST_LAYER`; the triangle
     itself, Cφ = 1, has none.
 
-    As θmax → 90° the wing feathers all the way between its reversals, and what power is left comes from the layers
-    alone: there the error of the power is relative to v̄³, not to the power itself. Up to 85° (α_min of 5°) it is not.
+    As θmax → 90° the wing feathers all the way between its reversals, and what lift and power are left come from the
+    layers alone: there the errors are relative to v̄² and v̄³, not to the averages themselves. Up to 85° (α_min of 5°)
+    they are not.
 
     Args:
         flap_shape: Cφ, the largest of which counts [-].

@@ -23,7 +23,7 @@ def as_autoreset_mode(value: AutoresetMode | str) -> AutoresetMode:
     Raises:
         ValueError: for anything else.
     """
-    for mode in AutoresetMode:
+    for mode in AutoresetMode if isinstance(value, AutoresetMode | str) else ():
         if value in (mode, mode.name, mode.value):
             return mode
     raise ValueError(f"autoreset_mode = {value!r} is unknown; {allowed(value, [m.name for m in AutoresetMode])}")
@@ -292,7 +292,7 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
             final = {
                 "final_obs": observations,
                 "_final_obs": finished.copy(),
-                "final_info": self._masked(info, finished),
+                "final_info": {key: value.copy() for key, value in self._masked(info, finished).items()},
                 "_final_info": finished.copy(),
             }
             going_on = {} if finished.all() else self._masked(info, ~finished)

@@ -94,7 +94,7 @@ class HoverEnv(SingleEnv):
             TypeError: for a seed or options of another type.
             ValueError: for an unknown option.
         """
-        if seed is not None or options or self._beat is None:
+        if seed is not None or options is not None or self._beat is None:
             return super().reset(seed=seed, options=options)
         return self._hover.start_one(self.np_random)
 

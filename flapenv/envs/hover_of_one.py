@@ -105,29 +105,21 @@ def score(wing: Any, lift: float, power: float, results: Any) -> None:
     results[12] = specific_power / wing[BEST] - 1 + wing[CHARGE] * deficit
 
 
-def composed(decode: Any, averages: Any, score: Any) -> Any:
-    """The three steps as one function, plain or each compiled."""
-
-    def beat(
-        action: Any, axes: Any, wing: Any, fractions: Any, weights: Any, sines: Any, slack: float, results: Any
-    ) -> None:
-        results[13] = decode(action, axes, wing, slack, results)
-        lift, power = averages(results, fractions, weights, sines)
-        score(wing, lift, power, results)
-
-    return beat
-
-
-plain_beat = composed(decode, averages, score)
+def beat(
+    action: Any, axes: Any, wing: Any, fractions: Any, weights: Any, sines: Any, slack: float, results: Any
+) -> None:
+    """Everything that an action gives a wing, into `results` in the order of `RESULTS`."""
+    results[13] = decode(action, axes, wing, slack, results)
+    lift, power = averages(results, fractions, weights, sines)
+    score(wing, lift, power, results)
 
 
 @functools.cache
-def compiled_beat() -> Any:
+def _compiled_beat() -> Any:
     """The same, compiled."""
-    import numba
+    from flapenv.envs.hover_compiled import beat
 
-    compile_ = numba.njit(error_model="numpy", cache=True)
-    return compile_(composed(compile_(decode), compile_(averages), compile_(score)))
+    return beat
 
 
 def serves(model: HoverModel) -> bool:
@@ -153,9 +145,9 @@ class HoverOfOne:
         """What an action (n,) gives the wing of a number, in the order of `RESULTS`."""
         tables = self._axes, self._wings[number], self._fractions, self._weights, self._sines
         if self.compiled:
-            compiled_beat()(action, *tables, self._slack, self._results)
+            _compiled_beat()(action, *tables, self._slack, self._results)
             return self._results.tolist()
-        plain_beat(action.tolist(), *tables, self._slack, self._results)
+        beat(action.tolist(), *tables, self._slack, self._results)
         return self._results
 
 

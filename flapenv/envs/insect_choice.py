@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from flapenv.aero.checks import is_single, require_name
+from flapenv.aero.checks import is_single, require_count, require_name
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.optimum import optimum
 from flapenv.problem import HoverProblem
-from flapenv.wing_pool import Split, wing_pool
+from flapenv.wing_pool import SPLITS, Split, wing_pool
 
 InsectChoice = str | Insect | Mapping[str, Any] | Sequence[Any]
 
@@ -96,7 +96,19 @@ def without_infeasible(
 
 
 def choose_pool(problem: HoverProblem, *, size: int, seed: int, split: Split, leave_out: Insect | str | None) -> Insect:
-    """The pool that "random-wing" draws from, an insect with array fields; arguments as `wing_pool`'s."""
+    """The pool that "random-wing" draws from, an insect with array fields; arguments as `wing_pool`'s.
+
+    Raises:
+        TypeError: for a size or seed that is not a whole number, or a left-out insect with array fields.
+        ValueError: for one out of range or an unknown name, called as the environment's argument is.
+    """
+    require_count("pool_size", size)
+    require_count("pool_seed", seed, low=0)
+    require_name("pool_split", split, SPLITS)
+    if isinstance(leave_out, str):
+        require_name("leave_out", leave_out, INSECTS)
+    elif leave_out is not None and not is_single(as_insect(leave_out)):
+        raise TypeError("leave_out has array fields; allowed: a name or one insect")
     fixed = not problem.box.is_free("frequency")
     return wing_pool(
         size,
@@ -122,6 +134,8 @@ def chosen_rows(chosen: Any, names: Sequence[str], rows: int) -> np.ndarray:
     """
     if not isinstance(chosen, str | list | tuple | np.ndarray):
         raise TypeError(f"reset option insect = {chosen!r} is not allowed; allowed: a name, or one for each row")
+    if isinstance(chosen, np.ndarray) and chosen.ndim != 1:
+        raise ValueError(f"reset option insect has shape {chosen.shape}; allowed: a name, or one for each row")
     wanted = [chosen] * rows if isinstance(chosen, str) else list(chosen)
     if len(wanted) != rows:
         raise ValueError(f"reset option insect has {len(wanted)} names; allowed: one, or one for each row")
