@@ -20,7 +20,7 @@ class Flights:
     """What a policy did in many episodes; arrays of shape (episodes,).
 
     Attributes:
-        power_excess: mean of P*/P*_hover - 1 over the beats flown [-].
+        power_excess: mean of P*/P*_hover - 1 over the beats flown, what the motion at the end is worth taken off [-].
         square_height: mean of (z/R)² over them [-].
         beats: flown before the end.
         lost: whether the row left the band.
@@ -55,6 +55,7 @@ class Comparison:
         difference: of the two; negative where the policy needs less [-].
         interval: of the difference, 95 % by bootstrap over the episodes, which both flew through the same gusts [-].
         inside: whether the policy's rms height lies within the front's.
+        lost: episodes in which the policy left the band; with any, power and height are those of what was flown.
     """
 
     rms_height: float
@@ -63,6 +64,7 @@ class Comparison:
     difference: float
     interval: tuple[float, float]
     inside: bool
+    lost: int
 
 
 def fly(policy: Policy, *, episodes: int = EPISODES, seed: int = 0, **arguments: Any) -> Flights:
@@ -75,10 +77,12 @@ def fly(policy: Policy, *, episodes: int = EPISODES, seed: int = 0, **arguments:
         **arguments: of `HeaveVectorEnv`, such as insect.
 
     Raises:
-        TypeError: for a count that is not a whole number, or what the environment refuses.
+        TypeError: for a count that is not a whole number, infos, which are its own, or what the environment refuses.
     """
     require_count("episodes", episodes)
-    env = HeaveVectorEnv(episodes, **arguments)
+    if "infos" in arguments:
+        raise TypeError(f"infos = {arguments['infos']!r} is not an argument here; allowed: leave it out")
+    env = HeaveVectorEnv(episodes, infos=["power_excess", "height_ratio", "reward/end"], **arguments)
     observations, _ = env.reset(seed=seed)
     start = getattr(policy, "start", None)
     if start is not None:
@@ -89,8 +93,8 @@ def fly(policy: Policy, *, episodes: int = EPISODES, seed: int = 0, **arguments:
         observations, rewards, terminated, truncated, info = env.step(policy(observations))
         beats += flying
         returns += np.where(flying, rewards, 0)
-        power += np.where(flying, info.get("power_excess", 0), 0)
-        square += np.where(flying, info.get("height_ratio", 0), 0) ** 2
+        power += np.where(flying, info["power_excess"] - info["reward/end"], 0)
+        square += np.where(flying, info["height_ratio"], 0) ** 2
         lost |= flying & terminated
         flying &= ~(terminated | truncated)
         if not flying.any():
@@ -122,7 +126,10 @@ def compare_with_front(flights: Flights, front: Sequence[Flights], *, seed: int 
     power = shares @ np.stack([one.power_excess for one in every], axis=1)
     level = 0.5 * np.log(np.maximum(square, 1e-30))
     chosen = 1 + _undominated(level[0, 1:], power[0, 1:])
-    there = np.array([np.interp(x[0], x[chosen], p[chosen]) for x, p in zip(level, power, strict=True)])
+    there = np.empty(len(level))
+    for number, (x, p) in enumerate(zip(level, power, strict=True)):
+        rising = chosen[np.argsort(x[chosen])]  # a resample may order the front anew
+        there[number] = np.interp(x[0], x[rising], p[rising])
     difference = power[:, 0] - there
     tail = 50 * (1 - CONFIDENCE)
     low, high = np.percentile(difference[1:], [tail, 100 - tail])
@@ -133,6 +140,7 @@ def compare_with_front(flights: Flights, front: Sequence[Flights], *, seed: int 
         difference=float(difference[0]),
         interval=(float(low), float(high)),
         inside=bool(level[0, chosen[0]] <= level[0, 0] <= level[0, chosen[-1]]),
+        lost=int(np.sum(flights.lost)),
     )
 
 

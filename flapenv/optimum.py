@@ -12,9 +12,10 @@ import numpy as np
 
 from flapenv.aero.checks import is_single, record
 from flapenv.aero.stroke import Stroke
-from flapenv.case import HoverCase, lift_constant
+from flapenv.case import HoverCase, hover_case, lift_constant
 from flapenv.insects import Insect, as_insect
 from flapenv.model import warn_of_aspect_ratio
+from flapenv.performance import yardstick
 from flapenv.problem import HoverProblem, as_problem
 from flapenv.search import CANDIDATES, SAMPLES, STARTS, WEIGHT_TOLERANCE, Search, spread
 from flapenv.simulation import evaluate_by_blade_element
@@ -23,6 +24,8 @@ ORACLE_STEPS = (40_000, 1_000_000)
 """Instants a cycle of the oracle that confirms an optimum; the second where waveforms are too sharp for the first."""
 ORACLE_TOLERANCE = 1e-5
 """Relative difference up to which the refined oracle confirms an optimum."""
+NEXT_TO_NOTHING = 1e-4
+"""Lift and power that are not compared digit for digit, over the yardstick stroke's."""
 ROUGH_TOLERANCE = 2e-4
 """The same for coefficients that jump or have corners, and for power that is only paid where positive."""
 
@@ -196,8 +199,11 @@ def _confirmed(
     rough = squared or callable(problem.model.coefficients) or problem.model.coefficients == "robofly"
     tolerance = ROUGH_TOLERANCE if rough else ORACLE_TOLERANCE
     span: dict[str, Any] = {"strips": 24, "spacing": "graded"} if squared else {"strips": 6, "spacing": "gauss"}
+    # a stroke that feathers all the way lifts and costs next to nothing, and only at its thinnest instants
+    least = np.array(yardstick(hover_case(insect, problem.model), problem.model)) * NEXT_TO_NOTHING
     for steps in ORACLE_STEPS:
         checked = evaluate_by_blade_element(insect, stroke, **span, steps=steps, **vars(problem.model))
-        if np.allclose(checked, found, rtol=tolerance, atol=1e-9):  # a stroke may lift nothing at all
+        nothing = np.maximum(np.abs(checked), np.abs(found)) <= least
+        if np.all(np.isclose(checked, found, rtol=tolerance, atol=1e-9) | nothing):
             return checked
     raise ArithmeticError(f"{insect.name}: the oracle finds {checked}, the search {found} for {stroke}")

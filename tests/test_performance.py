@@ -10,7 +10,7 @@ import torch
 from conftest import strokes, yardstick_stroke
 from hypothesis import given
 
-from flapenv import HoverModel, Insect, Stroke, Wing, evaluate, load_insect
+from flapenv import HoverModel, Insect, Stroke, Wing, WingFactors, evaluate, load_insect
 from flapenv.case import hover_case, stack_cases, wing_factors
 from flapenv.performance import yardstick
 from flapenv.simulation import evaluate_by_blade_element
@@ -199,3 +199,21 @@ def test_a_table_of_strokes_keeps_its_shape_whatever_the_parts() -> None:
     found = evaluate("hawkmoth", Stroke(frequency=frequency, flap_amplitude=1.0, pitch_amplitude=0.9), tolerance=1e-4)
     assert np.shape(found.specific_power) == frequency.shape
     assert np.all(np.diff(np.asarray(found.specific_power).reshape(-1)) > 0)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_many_strokes_take_insects_with_tables_as_few_do(threads: int) -> None:
+    fruitfly, many = load_insect("fruitfly"), 70_000
+    factors = WingFactors(k_ind=np.array([1.1, 1.2, 1.3]), k_tip=np.ones(3))
+    own = dataclasses.replace(fruitfly.stroke, frequency=np.array([100.0, 200.0, 300.0]))
+    frequency = np.linspace(150, 250, many)
+    for insect, values in (
+        (dataclasses.replace(fruitfly, k_table=factors), frequency[:, None]),
+        (dataclasses.replace(fruitfly, stroke=own), frequency),
+    ):
+        stroke = Stroke(frequency=values, flap_amplitude=1.2, pitch_amplitude=0.8)
+        few = dataclasses.replace(stroke, frequency=values[:5])
+        whole = evaluate(insect, stroke, tolerance=1e-4, threads=threads).specific_power
+        np.testing.assert_allclose(
+            np.asarray(whole)[:5], evaluate(insect, few, tolerance=1e-4).specific_power, rtol=1e-12
+        )

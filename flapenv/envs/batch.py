@@ -191,7 +191,7 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
 
     @abstractmethod
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
-        """Begin an episode in the rows of `mask`; the reset info of all rows, as arrays."""
+        """Begin an episode in the rows of `mask`, options as `prepare` gives them; the reset info of all rows."""
 
     @abstractmethod
     def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
@@ -226,16 +226,26 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
             TypeError: for a seed, mask or options of another type.
             ValueError: for an unknown option or a mask of another shape or without a True.
         """
-        super().reset(seed=require_seed(seed))
-        options = require_options(options, ("reset_mask", *self.reset_options))
+        seed, options = require_seed(seed), require_options(options, ("reset_mask", *self.reset_options))
         mask = self._reset_mask(options.pop("reset_mask", None))
         if not self._begun and not mask.all():
             raise error.ResetNeeded("the first reset must be of all rows, without options['reset_mask']")
+        options = self.prepare(options)  # all is checked before anything changes
+        super().reset(seed=seed)
         info = self._open(mask, options)
         return self._observe(), self._masked(info, mask)
 
+    def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
+        """Reset options checked and as `_begin` takes them.
+
+        Raises:
+            TypeError: for an option of another type.
+            ValueError: for an unknown name, another shape, or a value outside its range.
+        """
+        return options
+
     def start(self, options: dict[str, Any]) -> tuple[np.ndarray, Info]:
-        """New episodes in all rows, with checked options: observations and unmasked infos."""
+        """New episodes in all rows, with prepared options: observations and unmasked infos."""
         info = self._open(self._everyone, options)
         return self._observe(), info
 

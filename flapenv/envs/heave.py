@@ -13,12 +13,14 @@ from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import action_table, described, markdown_table, stroke_rows
-from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
+from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.single import SingleEnv
 from flapenv.envs.wing_features import OBSERVATION_LIMIT
 from flapenv.heave.dynamics import HeaveBeat, HeaveDynamics
 from flapenv.heave.gusts import EpisodeStreams, GustModel, Place, as_gusts
+from flapenv.heave.linear import linear_beat, worth_of_motion
 from flapenv.heave.trim import BOX
+from flapenv.insects import Insect
 
 HEIGHT_LIMIT = 5.0
 """An episode ends at this height above or below the start's middle [wing lengths]."""
@@ -31,6 +33,8 @@ HEIGHT_COST = 0.5
 WORST_BEAT = 25.0
 """No beat is charged more. At the edge of the band height costs 12.5; the most wasteful stroke 8.7 in still air, 11
 while sinking at 0.3 U."""
+WORST_END = 100.0
+"""No motion at the end is charged or credited more, and a row that is lost is charged as much."""
 START_HEIGHT, START_VELOCITY = 1.0, 0.02
 """Half-ranges of z/R and w/U at the start."""
 TYPICAL_GRAVITY = 0.02
@@ -55,6 +59,7 @@ class HeaveVectorEnv(BatchEnv):
         "reward/power",
         "reward/height",
         "reward/lost",
+        "reward/end",
         *(f"stroke/{name}" for name in STROKE_PARAMETERS),
         "clipped",
     )
@@ -105,6 +110,7 @@ class HeaveVectorEnv(BatchEnv):
         ]
         self._features = np.stack(features, axis=-1).astype(np.float32)
         self._names = np.array([one.name for one in self.insects], dtype=object)
+        self._worth = _worth_of_motion(self.insects)
         self._trim_actions = self.dynamics.trim_actions().astype(np.float32)
         size = len(self.coordinates)
         super().__init__(
@@ -125,12 +131,15 @@ class HeaveVectorEnv(BatchEnv):
         self._beaten = np.zeros(num_envs, dtype=np.intp)  # the insect of each row's last wingbeat
         self._paths = np.full((num_envs if render_mode else 0, self.beats + 1), np.nan)  # z/R of the last episode
 
+    def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
+        """The option "insect" as row numbers, height and velocity for every row."""
+        options = prepared_insects(options, [one.name for one in self.insects], self.num_envs)
+        for name, limit in (("height", HEIGHT_LIMIT), ("velocity", VELOCITY_LIMIT)):
+            options[name] = self._wanted(name, options.get(name), limit)
+        return options
+
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
-        insect = options.get("insect")
-        if insect is not None:
-            insect = chosen_rows(insect, [one.name for one in self.insects], self.num_envs)
-        height = self._wanted("height", options.get("height"), HEIGHT_LIMIT)
-        velocity = self._wanted("velocity", options.get("velocity"), VELOCITY_LIMIT)
+        insect, height, velocity = (options.get(name) for name in ("insect", "height", "velocity"))
         key = None
         if self._source is not self.np_random:  # seeded since: a series of episodes begins
             self._source = self.np_random
@@ -164,11 +173,13 @@ class HeaveVectorEnv(BatchEnv):
         lost = (np.abs(beat.height) > HEIGHT_LIMIT) | (np.abs(beat.velocity) > VELOCITY_LIMIT)
         self._keep(beat, strokes, actions, mask)
         left = self.beats - self._beat_number
-        terms = self._terms(beat, np.where(lost, left, 0))
-        rewards = np.maximum(terms["reward/power"] + terms["reward/height"], -WORST_BEAT) + terms["reward/lost"]
+        truncated = (left == 0) & ~lost
+        terms = self._terms(beat, np.where(lost, left, -1), truncated)
+        rewards = np.maximum(terms["reward/power"] + terms["reward/height"], -WORST_BEAT)
+        rewards += terms["reward/lost"] + terms["reward/end"]
         self._gust = self._gust_of_the_next_beat()
         self._record(before, mask)
-        return rewards, lost, (left == 0) & ~lost, self._info(beat, gust, terms, strokes, clipped)
+        return rewards, lost, truncated, self._info(beat, gust, terms, strokes, clipped)
 
     def _keep(self, beat: HeaveBeat, strokes: dict[str, np.ndarray], actions: np.ndarray, mask: np.ndarray) -> None:
         """Take what a beat came to into the state of the rows of `mask`; a row that is lost stays at the edge."""
@@ -182,13 +193,17 @@ class HeaveVectorEnv(BatchEnv):
                 np.copyto(self._stroke[name], value, where=mask)
             np.copyto(self._beaten, self._insect, where=mask)
 
-    def _terms(self, beat: HeaveBeat, lost_beats: np.ndarray) -> dict[str, np.ndarray]:
-        """The terms of the reward, each of shape (rows,)."""
+    def _terms(self, beat: HeaveBeat, lost_beats: np.ndarray, truncated: np.ndarray) -> dict[str, np.ndarray]:
+        """The terms of the reward, each of shape (rows,); lost_beats is negative where the row is not lost."""
         hover_power = self.dynamics.trim.specific_power[self._insect]
+        price, curvature = (worth[self._insect] for worth in self._worth)
+        motion = np.stack([self._height, self._velocity], axis=-1)
+        worth = np.sum(price * motion, axis=-1) - np.einsum("ri,rij,rj->r", motion, curvature, motion)
         return {
             "reward/power": 1 - beat.specific_power / hover_power,
             "reward/height": -HEIGHT_COST * self._height**2,
-            "reward/lost": 0.0 - WORST_BEAT * lost_beats,
+            "reward/lost": np.where(lost_beats >= 0, 0.0 - WORST_BEAT * lost_beats - WORST_END, 0.0),
+            "reward/end": np.where(truncated, np.clip(worth, -WORST_END, WORST_END), 0.0),
         }
 
     def _gust_of_the_next_beat(self) -> np.ndarray:
@@ -262,6 +277,14 @@ class HeaveVectorEnv(BatchEnv):
         return heave_image(self.insects[insect], stroke, path, beats=self.beats, limit=HEIGHT_LIMIT)
 
 
+def _worth_of_motion(insects: tuple[Insect, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Price and curvature of the motion at an episode's end for every insect, shapes (insects, 2), (insects, 2, 2)."""
+    dynamics = HeaveDynamics(insects)
+    axis = list(dynamics.coordinates.axis_names).index("flap_amplitude")
+    worths = [worth_of_motion(linear_beat(dynamics, i), axis, HEIGHT_COST) for i in range(len(insects))]
+    return np.stack([worth.price for worth in worths]), np.stack([worth.curvature for worth in worths])
+
+
 @described(
     actions=action_table(stroke_rows(BOX, StrokeCoordinates(BOX).axis_names)),
     observations=markdown_table(
@@ -278,8 +301,9 @@ class HeaveVectorEnv(BatchEnv):
     ),
     rewards=f"""-(P*/P*_hover - 1) - {HEIGHT_COST:g} (z/R)², z at the end of the beat; `info["reward/power"]` and
 `info["reward/height"]`. A beat costs at most {WORST_BEAT:g}, more than the most wasteful stroke at the band's edge. A
-row that is lost is charged that for every beat left, `info["reward/lost"]`: an early end never pays, whatever the other
-beats would have cost.""",
+row that is lost is charged that for every beat left, and {WORST_END:g}, `info["reward/lost"]`: an early end never pays,
+whatever the other beats would have cost. At truncation height and speed are credited or charged at what they are
+worth, within ±{WORST_END:g}, `info["reward/end"]`, so that letting go in the last beats does not pay either.""",
     starts=f"""An insect drawn uniformly, z in ±{START_HEIGHT:g} R, w in ±{START_VELOCITY:g} U, a gust from its
 stationary distribution; or `options={{"insect": name, "height": z/R, "velocity": w/U}}`, each of them one value or one
 for each row.""",

@@ -13,11 +13,11 @@ from flapenv.adapt.ladder import BOX
 from flapenv.adapt.references import COORDINATES
 from flapenv.adapt.task import BEATS, LEAST_MARGIN, NOISE, PROBLEM, AdaptTask, Draws, Flight, choose
 from flapenv.adapt.tuning import NAMES, shipped, tuned_for
-from flapenv.aero.checks import require_count, require_flag, require_name
+from flapenv.aero.checks import require_count, require_flag, require_name, require_scalar
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import action_table, described, stroke_rows
-from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects
+from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.last_beat import LastBeat
 from flapenv.envs.single import SingleEnv
 from flapenv.envs.wing_features import OBSERVATION_LIMIT, wing_features
@@ -128,13 +128,21 @@ class HoverAdaptVectorEnv(BatchEnv):
         self._return = np.zeros(num_envs)
         self._last = LastBeat(num_envs, self.beats, tuple(vars(NOMINAL)), TRACES)
 
+    def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
+        """The option "insect" as row numbers, and "condition" as a checked `Condition` that all of them can carry."""
+        options = prepared_insects(options, [one.name for one in self.insects], self.num_envs)
+        condition = options.pop("condition", None)
+        if condition is not None:
+            options["condition"] = self._checked(condition, np.unique(options.get("insect", range(len(self.insects)))))
+        return options
+
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
         insect = self.np_random.integers(len(self.insects), size=self.num_envs)
-        if options.get("insect") is not None:
-            insect = chosen_rows(options["insect"], [one.name for one in self.insects], self.num_envs)
+        insect = options.get("insect", insect)
         draws = self.task.draw(self.np_random, insect)
-        if options.get("condition") is not None:
-            draws = self._given(insect, options["condition"])
+        if "condition" in options:
+            rows = _rows(options["condition"], self.num_envs)
+            draws = Draws(before=rows, after=rows, change_beat=np.full(self.num_envs, self.beats))
         self._insect = np.where(mask, insect, self._insect)
         self._draws = choose(mask, draws, self._draws)
         self._flown = np.where(mask, 0, self._flown)
@@ -144,21 +152,26 @@ class HoverAdaptVectorEnv(BatchEnv):
         self._company.begin(mask, self._insect)
         return {"insect": self._names[self._insect]}
 
-    def _given(self, insect: np.ndarray, condition: Any) -> Draws:
-        """One condition for all rows, which stays."""
+    def _checked(self, condition: Any, insects: np.ndarray) -> Condition:
+        """One condition for a whole episode of any of the insects."""
+        known = tuple(vars(NOMINAL))
         if not isinstance(condition, Mapping):
             raise TypeError(
-                f"reset option condition = {condition!r} is not allowed; allowed: a dict with payload, density_ratio "
-                "and span_lost"
+                f"reset option condition = {condition!r} is not allowed; allowed: a dict with keys of "
+                f"{', '.join(known)}"
             )
-        rows = _rows(Condition(**condition), self.num_envs)
-        largest = float(np.min(self.task.flight(insect, rows).max_weight_support))
+        values = {}
+        for name, value in condition.items():
+            require_name("reset option condition: key", name, known)
+            values[name] = require_scalar(f"reset option condition: {name}", value)
+        checked = Condition(**values)
+        largest = float(np.min(self.task.flight(insects, _rows(checked, len(insects))).max_weight_support))
         if largest < LEAST_MARGIN:
             raise ValueError(
                 f"reset option condition = {condition!r} is not allowed: the largest weight support there is "
                 f"{largest:.3f}; allowed: conditions with {LEAST_MARGIN:g} or more"
             )
-        return Draws(before=rows, after=rows, change_beat=np.full(self.num_envs, self.beats))
+        return checked
 
     def _begin_flights(self) -> None:
         """What the conditions of all rows amount to, and the present one of each."""

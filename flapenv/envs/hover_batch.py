@@ -15,7 +15,7 @@ from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown, refuse_unused
 from flapenv.envs.hover_of_one import HoverOfOne
-from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool, chosen_rows
+from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool, prepared_insects
 from flapenv.envs.wing_features import OBSERVATION_LIMIT, seen, wing_features
 from flapenv.insects import Insect
 from flapenv.objective import HoverObjective, Score
@@ -131,6 +131,7 @@ class HoverVectorEnv(BatchEnv):
 
         cases = self.objective.cases
         self._features, felt_power = wing_features(cases, self.flyers.r1_hat, self.problem)
+        self._require_finite_power()
         start = np.tile(np.array(FIRST_FELT, dtype=np.float32), (len(self.flyers), 1))
         self._first_seen = np.concatenate([self._features, start], axis=1)
         self._felt_power = felt_power.astype(self.dtype)
@@ -152,11 +153,24 @@ class HoverVectorEnv(BatchEnv):
         self._stroke = {name: np.zeros(num_envs, dtype=self.dtype) for name in STROKE_PARAMETERS}
         self._beaten = np.full(num_envs, NOT_YET, dtype=np.intp)  # the insect of each row's last wingbeat
 
+    def _require_finite_power(self) -> None:
+        """Refuse frequencies whose power the type of the computation cannot hold."""
+        cases, box = self.objective.cases, self.problem.box
+        frequency, amplitude = (box.bounds(name, cases.reference)[1] for name in ("frequency", "flap_amplitude"))
+        largest = float(np.max(1e3 * cases.power_scale * (4.0 * frequency * amplitude) ** 3))
+        if not largest < float(np.finfo(self.dtype).max):
+            raise ValueError(
+                f"upper bound of frequency = {float(np.max(frequency)):.6g} is not allowed with dtype = "
+                f"'{self.dtype.name}', whose numbers end before the power; allowed: a lower one"
+            )
+
+    def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
+        """The option "insect" as row numbers."""
+        return prepared_insects(options, list(self.flyers.names), self.num_envs)
+
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
         drawn = self.np_random.integers(len(self.flyers), size=self.num_envs)
-        chosen = options.get("insect")
-        if chosen is not None:
-            drawn = chosen_rows(chosen, list(self.flyers.names), self.num_envs)
+        drawn = options.get("insect", drawn)
         self._insect = np.where(mask, drawn, self._insect)
         self._felt[mask] = FIRST_FELT
         return {"insect": self.flyers.names[self._insect]}

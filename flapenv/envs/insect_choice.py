@@ -141,3 +141,10 @@ def chosen_rows(chosen: Any, names: Sequence[str], rows: int) -> np.ndarray:
         raise ValueError(f"reset option insect has {len(wanted)} names; allowed: one, or one for each row")
     number = {name: i for i, name in enumerate(names)}
     return np.array([number[require_name("reset option insect", name, number)] for name in wanted], dtype=np.intp)
+
+
+def prepared_insects(options: dict[str, Any], names: Sequence[str], rows: int) -> dict[str, Any]:
+    """Reset options with "insect", where it is given, as row numbers; arguments and errors as `chosen_rows`."""
+    chosen = options.get("insect")
+    kept = {key: value for key, value in options.items() if key != "insect"}
+    return kept if chosen is None else {**kept, "insect": chosen_rows(chosen, names, rows)}

@@ -54,9 +54,11 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
             TypeError: for a seed or options of another type.
             ValueError: for an unknown option.
         """
-        super().reset(seed=require_seed(seed))
+        seed = require_seed(seed)
+        prepared = self.batch.prepare(require_options(options, self.batch.reset_options))
+        super().reset(seed=seed)
         self.batch.np_random = self.np_random
-        observations, info = self.batch.start(require_options(options, self.batch.reset_options))
+        observations, info = self.batch.start(prepared)
         return observations[0], self._plain(info)
 
     def step(self, action: np.ndarray) -> tuple[np.ndarray, Any, bool, bool, Info]:
@@ -88,7 +90,7 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
         for key, value in info.items():
             if key[0] != "_" and key not in self.batch.unwanted:
                 element, present = value[0], info.get(f"_{key}")
-                row[key] = element.item() if isinstance(element, np.generic) else element
+                row[key] = element.tolist() if isinstance(element, np.generic | np.ndarray) else element
                 if present is not None and not present[0]:
                     row[key] = None
         return row

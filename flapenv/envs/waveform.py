@@ -13,7 +13,7 @@ from flapenv.case import hover_case, stack_cases
 from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import ACTION_HEADER, Row, described, markdown_table, stroke_rows
 from flapenv.envs.hover_batch import DEFAULT_PROBLEM, NOT_YET, ProblemChoice
-from flapenv.envs.insect_choice import InsectChoice, chosen_rows, listed_insects, without_infeasible
+from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects, without_infeasible
 from flapenv.envs.single import SingleEnv
 from flapenv.envs.wing_features import OBSERVATION_LIMIT, wing_features
 from flapenv.insects import Insect
@@ -125,11 +125,13 @@ class WaveformVectorEnv(BatchEnv):
         dropped = isinstance(choice, str) and choice == "all" and not include_infeasible
         return without_infeasible(insects, margins, "waveform", dropped=dropped, stacklevel=4)
 
+    def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
+        """The option "insect" as row numbers."""
+        return prepared_insects(options, list(self._names), self.num_envs)
+
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
         drawn = self.np_random.integers(len(self.insects), size=self.num_envs)
-        chosen = options.get("insect")
-        if chosen is not None:
-            drawn = chosen_rows(chosen, list(self._names), self.num_envs)
+        drawn = options.get("insect", drawn)
         self._insect = np.where(mask, drawn, self._insect)
         self._felt[mask] = (0.0, 0.0, 1.0)
         return {"insect": self._names[self._insect]}
@@ -244,10 +246,11 @@ class WaveformEnv(SingleEnv):
 
     ## Rewards
     -P*/P*_ref - λ max(0, 1 - Λ), not below -20. P*_ref is the proven lower bound. λ exceeds the multiplier of the best
-    waveform of n knots, so that the reward's optimum is the constrained optimum itself. Terms: `info["reward/power"]`,
-    `info["reward/lift"]`. `info["optimality_gap"]` measures from the best waveform of n knots where that is known
-    without a search (n = 4, 8, 16, 32; with a free frequency and no profile drag for every wing, else for the eight
-    insects), `info["bound_gap"]` always. `info["peak/flap_acceleration"]` is the largest φ̈/ω² and
+    waveform of n knots where that is known without a search, so that the reward's optimum is the constrained optimum
+    itself: n = 4, 8, 16, 32, with a free frequency and no profile drag for every wing whose best frequency lies inside
+    its bounds, else for most of the eight insects (docs/waveform.md). Elsewhere λ is 10, a guess. Terms:
+    `info["reward/power"]`, `info["reward/lift"]`. `info["optimality_gap"]` measures from that best waveform, None where
+    it is not known, `info["bound_gap"]` from the bound. `info["peak/flap_acceleration"]` is the largest φ̈/ω² and
     `info["peak/pitch_rate"]` the largest θ̇/ω of the cycle, in radians with the amplitude included: a sinusoid has
     φmax and θmax.
 

@@ -1,13 +1,16 @@
 """The averages that allocate nothing, against those in formulas that tensors and every force law share."""
 
 import concurrent.futures
+import multiprocessing
 import tracemalloc
+from typing import Any
 
 import numpy as np
 import pytest
 
 from flapenv.aero.force_laws import PlateLaw
 from flapenv.aero.plate_averages import plate_averages
+from flapenv.aero.threads import in_threads
 from flapenv.aero.wingbeat import TimeRule, speed_averages, time_rule
 
 RULE = TimeRule(24, 1.6)
@@ -56,6 +59,23 @@ def test_threads_do_not_share_what_they_work_on(rng: np.random.Generator) -> Non
     with concurrent.futures.ThreadPoolExecutor(4) as pool:
         together = list(pool.map(lambda batch: speed_averages(*batch, rule=RULE), batches))
     np.testing.assert_array_equal(together, alone)
+
+
+def test_a_forked_process_has_threads_of_its_own() -> None:
+    def work(answer: Any = None) -> None:
+        seen: list[slice] = []
+        in_threads(seen.append, [slice(0, 1), slice(1, 2)], 2)
+        if answer is not None:
+            answer.put(len(seen))
+
+    work()  # the pool of this process exists
+    context = multiprocessing.get_context("fork")
+    answer = context.Queue()
+    child = context.Process(target=work, args=(answer,))
+    child.start()
+    assert answer.get(timeout=20) == 2
+    child.join(20)
+    assert child.exitcode == 0
 
 
 def test_memory_does_not_grow_with_the_batch_beyond_its_results(rng: np.random.Generator) -> None:

@@ -230,6 +230,40 @@ def test_a_bad_reset_mask_is_refused(env_id: str, mask: Any, kind: type[Exceptio
         env.reset(options={"reset_mask": mask})
 
 
+def test_a_refused_reset_changes_nothing_at_all(env_id: str) -> None:
+    def after(refused: bool) -> list[np.ndarray]:
+        env = make(env_id)
+        env.reset(seed=4)
+        if refused:
+            for options in (
+                {"insect": "nobody"},
+                {"insect": ["hawkmoth"]},
+                {"reset_mask": np.ones(1, dtype=bool)},
+                {"x": 1},
+            ):
+                with pytest.raises((ValueError, TypeError)):
+                    env.reset(seed=9, options=options)
+        seen = [env.step(np.zeros(env.action_space.shape, dtype=np.float32))[0] for _ in range(2)]
+        return [*seen, env.reset()[0]]
+
+    for one, other in zip(after(refused=True), after(refused=False), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_infos_are_plain_values_that_json_takes(env_id: str) -> None:
+    env = gym.make(env_id)
+    env.reset(seed=0)
+    json.dumps(env.step(env.action_space.sample())[-1])
+
+
+def test_final_infos_share_no_array_with_those_of_the_next_episode(env_id: str) -> None:
+    env = make(env_id, "SAME_STEP", **ONE_BEAT.get(env_id, {}))
+    env.reset(seed=0)
+    info = env.step(np.zeros(env.action_space.shape, dtype=np.float32))[-1]
+    for key, value in info["final_info"].items():
+        assert key not in info or not np.shares_memory(value, info[key])
+
+
 def test_stepping_or_resetting_a_part_before_the_first_reset_is_refused(env_id: str) -> None:
     env = make(env_id)
     with pytest.raises(ResetNeeded):

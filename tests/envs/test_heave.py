@@ -15,6 +15,7 @@ from flapenv.envs.heave import (
     VELOCITY_LIMIT,
     VELOCITY_UNIT,
     WORST_BEAT,
+    WORST_END,
     HeaveEnv,
     HeaveVectorEnv,
 )
@@ -173,7 +174,7 @@ def test_leaving_the_band_ends_the_episode_and_charges_every_beat_that_is_left(a
         assert not truncated
     assert edge * info["height_ratio"] == HEIGHT_LIMIT
     assert observation[0] == edge * HEIGHT_LIMIT
-    assert info["reward/lost"] == -WORST_BEAT * (200 - info["beat"])
+    assert info["reward/lost"] == -WORST_BEAT * (200 - info["beat"]) - WORST_END
     assert reward == pytest.approx(info["reward/lost"] + info["reward/height"] + info["reward/power"])
 
 
@@ -184,15 +185,62 @@ def test_an_early_end_never_pays_against_any_way_to_stay() -> None:
     flying = (
         np.cumsum(found["terminated"] | found["truncated"], axis=0) - (found["terminated"] | found["truncated"]) == 0
     )
-    within = found["reward"][flying & ~found["terminated"]]
+    within = found["reward"][flying & ~found["terminated"] & ~found["truncated"]]
     assert within.min() >= -WORST_BEAT  # no beat costs more than each beat that a lost row is charged
+    assert found["reward"][flying & found["truncated"]].min() >= -WORST_BEAT - WORST_END  # nor the end
     beat, row = np.nonzero(flying & found["terminated"])
     assert len(row) > 100
-    assert np.all(found["reward"][beat, row] <= -WORST_BEAT * (39 - beat))
+    assert np.all(found["reward"][beat, row] <= -WORST_BEAT * (39 - beat) - WORST_END)
     # the edge of the band, held to the end with the most wasteful stroke, is still no worse than being lost
     env.reset(seed=0, options={"height": 4.99, "velocity": -0.02})
     *_, info = env.step(np.tile(MOST, (256, 1)))
     assert np.all(info["power_excess"] - info["reward/height"] < WORST_BEAT)
+
+
+@pytest.mark.parametrize("insect", ["hawkmoth", "honeybee", "cranefly"])
+@pytest.mark.parametrize("last", [1, 3, 6, 10])
+def test_letting_go_in_the_last_beats_never_pays(insect: str, last: int) -> None:
+    ways = np.array(
+        [
+            (-1, 1, 1, 1, 0),
+            (-0.5, 1, 1, 1, 0),
+            (0.2, 1, 1, 1, 0),
+            (1, 1, 1, 1, 0),
+            (-1, -1, -1, -1, -1),
+            (-1, 1, 1, 1, 1),
+        ],
+        dtype=np.float32,
+    )
+    env = HeaveVectorEnv(len(ways), insect=insect, beats=20, gusts=STILL, autoreset_mode="SAME_STEP", dtype="float64")
+    env.reset(seed=0, options={"height": 0.0, "velocity": 0.0})
+    hover = np.tile(env.dynamics.trim_actions().astype(np.float32), (len(ways), 1))
+    returns, flying, ends = np.zeros(len(ways)), np.ones(len(ways), dtype=bool), np.zeros(len(ways))
+    for beat in range(20):
+        _, rewards, lost, truncated, info = env.step(hover if beat < 20 - last else ways)
+        returns += np.where(flying, rewards, 0)
+        if truncated.any():
+            ends = np.where(flying & truncated, info["final_info"]["reward/end"], ends)
+        flying &= ~(lost | truncated)
+    assert np.all(returns < 1e-3)
+    if insect == "hawkmoth" and last == 3:
+        assert returns[0] - ends[0] > 1  # without the term it would pay
+
+
+def test_the_worth_of_motion_makes_hovering_a_stationary_point() -> None:
+    env = HeaveVectorEnv(1, insect="hawkmoth", beats=6, gusts=STILL, autoreset_mode="SAME_STEP", dtype="float64")
+    hover = env.dynamics.trim_actions()[0]
+
+    def total(change: float) -> float:
+        env.reset(seed=0, options={"height": 0.0, "velocity": 0.0})
+        result = 0.0
+        for beat in range(6):
+            result += float(env.step((hover + change * (beat == 3) * np.eye(5)[0])[None])[1][0])
+        return result
+
+    slope = (total(0.02) - total(-0.02)) / 0.04
+    assert abs(slope) < 0.02  # a unit of the action costs some two beats of power
+    assert total(0.2) < 0
+    assert total(-0.2) < 0
 
 
 def test_the_most_wasteful_strokes_stay_below_the_worst_beat() -> None:
@@ -215,8 +263,8 @@ def test_being_lost_with_the_last_beat_is_an_end_and_no_truncation() -> None:
     env.reset(seed=0, options={"height": 4.99, "velocity": 0.2})
     _, reward, terminated, truncated, info = env.step(HOVER)
     assert (terminated, truncated) == (True, False)
-    assert info["reward/lost"] == 0
-    assert reward > -WORST_BEAT
+    assert info["reward/lost"] == -WORST_END
+    assert -WORST_END - WORST_BEAT < reward < -WORST_END
 
 
 def test_too_fast_is_lost_as_well() -> None:

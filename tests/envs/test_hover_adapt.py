@@ -103,6 +103,10 @@ def test_a_condition_can_be_set_and_the_nominal_one_is_hover() -> None:
         env.reset(options={"condition": {"payload": 2}})
     with pytest.raises(TypeError, match=r"reset option condition = 1\.2"):
         env.reset(options={"condition": 1.2})
+    with pytest.raises(TypeError, match=r"reset option condition: payload = .* one number"):
+        env.reset(options={"condition": {"payload": np.array([1.0, 1.1])}})
+    with pytest.raises(ValueError, match=r"reset option condition: key = 'paylod' .*did you mean 'payload'"):
+        env.reset(options={"condition": {"paylod": 1.1}})
     with pytest.raises(ValueError, match="the largest weight support there is 0"):
         env.reset(options={"condition": {"payload": 1.25, "density_ratio": 0.8, "span_lost": 0.15}})
 

@@ -90,6 +90,15 @@ def test_a_bad_action_is_refused_and_the_episode_goes_on(bad: Any) -> None:
     assert env.reset()[0][-1] == 1
 
 
+@pytest.mark.parametrize("options", [[], "", 0, (), [1]])
+def test_options_of_another_kind_are_refused_empty_ones_too(options: Any) -> None:
+    env = HoverEnv()
+    with pytest.raises(TypeError, match="options"):
+        env.reset(options=options)
+    with pytest.raises(ValueError, match="shape"):
+        env.reset(options={"insect": np.array("fruitfly")})
+
+
 def test_large_and_opposite_actions_are_not_mistaken_for_finite_ones() -> None:
     env = HoverEnv(insect="hawkmoth")
     env.reset(seed=0)
