@@ -196,14 +196,16 @@ class HeaveVectorEnv(BatchEnv):
     def _terms(self, beat: HeaveBeat, lost_beats: np.ndarray, truncated: np.ndarray) -> dict[str, np.ndarray]:
         """The terms of the reward, each of shape (rows,); lost_beats is negative where the row is not lost."""
         hover_power = self.dynamics.trim.specific_power[self._insect]
-        price, curvature = (worth[self._insect] for worth in self._worth)
-        motion = np.stack([self._height, self._velocity], axis=-1)
-        worth = np.sum(price * motion, axis=-1) - np.einsum("ri,rij,rj->r", motion, curvature, motion)
+        worth = np.clip(
+            self._worth[0, self._insect] * self._height + self._worth[1, self._insect] * self._velocity,
+            -WORST_END,
+            WORST_END,
+        )
         return {
             "reward/power": 1 - beat.specific_power / hover_power,
             "reward/height": -HEIGHT_COST * self._height**2,
             "reward/lost": np.where(lost_beats >= 0, 0.0 - WORST_BEAT * lost_beats - WORST_END, 0.0),
-            "reward/end": np.where(truncated, np.clip(worth, -WORST_END, WORST_END), 0.0),
+            "reward/end": np.where(truncated, worth, 0.0),
         }
 
     def _gust_of_the_next_beat(self) -> np.ndarray:
@@ -277,12 +279,11 @@ class HeaveVectorEnv(BatchEnv):
         return heave_image(self.insects[insect], stroke, path, beats=self.beats, limit=HEIGHT_LIMIT)
 
 
-def _worth_of_motion(insects: tuple[Insect, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Price and curvature of the motion at an episode's end for every insect, shapes (insects, 2), (insects, 2, 2)."""
+def _worth_of_motion(insects: tuple[Insect, ...]) -> np.ndarray:
+    """What z/R and w/U at an episode's end are worth for every insect, shape (2, insects) [beats of hovering]."""
     dynamics = HeaveDynamics(insects)
     axis = list(dynamics.coordinates.axis_names).index("flap_amplitude")
-    worths = [worth_of_motion(linear_beat(dynamics, i), axis, HEIGHT_COST) for i in range(len(insects))]
-    return np.stack([worth.price for worth in worths]), np.stack([worth.curvature for worth in worths])
+    return np.array([worth_of_motion(linear_beat(dynamics, i), axis) for i in range(len(insects))]).T
 
 
 @described(

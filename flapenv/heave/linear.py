@@ -7,8 +7,6 @@ from flapenv.heave.dynamics import HeaveDynamics
 
 STEP = 1e-3
 """Of the central differences, in units of the action, R and U."""
-POWER_CURVATURE = 0.75
-"""d²P*/dΛ² over P*_hover of the best strokes, P* ∝ Λ^1.5."""
 STATES = ("height", "velocity", "gust")
 OUTPUTS = ("height", "velocity", "weight_support", "specific_power")
 
@@ -31,45 +29,24 @@ class LinearBeat:
     hover: np.ndarray
 
 
-@record
-class WorthOfMotion:
-    """What height and velocity at the end of an episode are worth, p·x - x·S x for x = (z/R, w/U) [beats of hovering].
+def worth_of_motion(beat: LinearBeat, axis: int) -> tuple[float, float]:
+    """What a unit of z/R and of w/U at the end of a beat is worth, p_z and p_w [beats of hovering].
 
-    Attributes:
-        price: p, shape (2,).
-        curvature: S, shape (2, 2), symmetric.
-    """
-
-    price: np.ndarray
-    curvature: np.ndarray
-
-
-def worth_of_motion(beat: LinearBeat, axis: int, height_cost: float) -> WorthOfMotion:
-    """The power and the height still to be paid for after hovering has been left, to second order.
-
-    Hovering is a stationary point of what is to come when the prices satisfy (the discrete adjoint of the beat map)
+    Hovering is a stationary point of the power to come when both prices satisfy
 
         p_w = -∂c/∂w + p_z ∂z'/∂w + p_w ∂w'/∂w,      0 = -∂c/∂u + p_z ∂z'/∂u + p_w ∂w'/∂u,
 
     c = P*/P*_hover of a beat, primes its end, u the cheapest input: to first order no way of letting go or of climbing
-    pays. Coming back costs x·S x, the least of Σ height_cost (z/R)² + ½ ¾ (Λ_u u)² on the linear map, where P* ∝ Λ^1.5
-    has the curvature ¾: the solution of a discrete algebraic Riccati equation.
+    pays (the discrete adjoint of the beat map). Beyond first order it costs, as P* ∝ Λ^1.5 is convex.
 
     Args:
         beat: the linear beat map.
         axis: u, of the action.
-        height_cost: charged a beat for (z/R)² = 1 [-].
     """
-    from scipy.linalg import solve_discrete_are
-
     (z_w, w_w), c_w = beat.by_state[:2, 1], beat.by_state[3, 1]
     (z_u, w_u), c_u = beat.by_action[:2, axis], beat.by_action[3, axis]
-    price = np.linalg.solve([[z_w, w_w - 1], [z_u, w_u]], [c_w, c_u])
-    strain = 0.5 * POWER_CURVATURE * float(beat.by_action[2, axis]) ** 2
-    way = beat.by_state[:2, :2], beat.by_action[:2, axis : axis + 1]
-    return WorthOfMotion(
-        price=price, curvature=solve_discrete_are(*way, np.diag([height_cost, 0.0]), np.array([[strain]]))
-    )
+    height, velocity = np.linalg.solve([[z_w, w_w - 1], [z_u, w_u]], [c_w, c_u])
+    return float(height), float(velocity)
 
 
 def linear_beat(dynamics: HeaveDynamics, index: int) -> LinearBeat:
