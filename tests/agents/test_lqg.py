@@ -134,6 +134,39 @@ def test_pd_at_equal_height_needs_more_power(front: module.Front) -> None:
     assert found.difference > 0
 
 
+class LetsGo:
+    """LQG that drops the insect in the last beats of an episode, counting them."""
+
+    def __init__(self, insect: str, beats: int) -> None:
+        self.controller, self.fall, self.beat = lqg(insect, 0.208), 200 - beats, 0
+
+    def start(self) -> None:
+        self.controller.start()
+        self.beat = 0
+
+    def __call__(self, observations: np.ndarray) -> np.ndarray:
+        actions = self.controller(observations).copy()
+        self.beat += 1
+        if self.beat > self.fall:
+            actions[:, self.controller.design.axis] = -1
+        return actions
+
+
+@pytest.mark.parametrize(("insect", "beats"), [("hawkmoth", 3), ("honeybee", 10)])
+def test_letting_go_at_the_end_wins_nothing_over_the_controller_that_holds_on(insect: str, beats: int) -> None:
+    held, dropped = (
+        fly(policy, insect=insect, episodes=EPISODES) for policy in (lqg(insect, 0.208), LetsGo(insect, beats))
+    )
+    assert not dropped.lost.any()
+    assert np.mean(dropped.returns) < np.mean(held.returns)
+    assert dropped.mean_power_excess > held.mean_power_excess
+
+
+def test_flights_have_infos_of_their_own() -> None:
+    with pytest.raises(TypeError, match="infos = 'none' is not an argument here"):
+        fly(hold_still, insect="hawkmoth", episodes=2, infos="none")
+
+
 def test_unlike_flights_are_not_compared(front: module.Front) -> None:
     short = fly(proportional_derivative("hawkmoth", 1.0), insect="hawkmoth", episodes=3)
     with pytest.raises(ValueError, match="allowed: two or more of 3 each"):
