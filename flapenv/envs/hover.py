@@ -1,10 +1,12 @@
 """flapenv/Hover-v0: one step is one wingbeat; hover with the least power."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from flapenv.aero.accelerators import Accelerator
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.envs.batch import Info, checked_actions
 from flapenv.envs.describe import action_table, described, stroke_rows
@@ -77,8 +79,9 @@ class HoverEnv(SingleEnv):
         """Make a batch of one; arguments as `SingleEnv`."""
         super().__init__(render_mode=render_mode, **arguments)
         batch = self._hover
-        plain = serves(batch.problem.model)
-        self._beat = HoverOfOne(batch.objective, batch.coordinates, batch.accelerator) if plain else None
+        self._beat: HoverOfOne | None = None
+        if serves(batch.problem.model):
+            self._beat = HoverOfOne(batch.objective, batch.coordinates, _compiled_beat(batch.accelerator))
         self._shape = self.action_space.shape
 
     @property
@@ -106,3 +109,13 @@ class HoverEnv(SingleEnv):
         if not plain or not math.isfinite(sum(action.tolist())):
             action = checked_actions("action", action, self._shape)
         return self._hover.advance_one(self._beat, action)
+
+
+def _compiled_beat(accelerator: Accelerator) -> Callable[..., None] | None:
+    """What `HoverOfOne` runs in place of plain Python, if anything."""
+    if accelerator == "numpy":
+        return None
+    from flapenv.envs.hover_compiled import beat
+
+    run: Callable[..., None] = beat
+    return run

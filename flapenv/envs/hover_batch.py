@@ -10,13 +10,14 @@ from gymnasium.vector import AutoresetMode
 
 from flapenv.aero.accelerators import Accelerator
 from flapenv.aero.checks import require_count, require_flag, require_name
-from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
+from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
-from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown, refuse_unused
+from flapenv.envs.batch import Info, InfoChoice, refuse_unknown, refuse_unused
 from flapenv.envs.hover_of_one import HoverOfOne
-from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool, prepared_insects
-from flapenv.envs.wing_features import OBSERVATION_LIMIT, seen, wing_features
+from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool
+from flapenv.envs.one_beat import FIRST_FELT, SMALLEST_POWER, OneBeatEnv
+from flapenv.envs.wing_features import OBSERVATION_LIMIT
 from flapenv.insects import Insect
 from flapenv.objective import HoverObjective, Score
 from flapenv.problem import PROBLEMS, HoverProblem, as_problem
@@ -24,24 +25,18 @@ from flapenv.references import GapTo
 from flapenv.wing_pool import Split
 
 ProblemChoice = str | HoverProblem | Mapping[str, Any]
-SMALLEST_POWER = 1e-30
-"""Stands in for no power at all where its logarithm is felt [W/kg]."""
-NOT_YET = -1
-FIRST_FELT = (0.0, 0.0, 1.0)
-"""Last Λ - 1, last log P*/P*_felt and fraction of the episode left, at the start."""
 RewardKind = Literal["scalar", "vector"]
 REWARD_KINDS: tuple[RewardKind, ...] = ("scalar", "vector")
 DEFAULT_PROBLEM = next(iter(PROBLEMS))
 
 
-class HoverVectorEnv(BatchEnv):
+class HoverVectorEnv(OneBeatEnv):
     """Batched `HoverEnv`, which describes actions, observations and rewards: one step is one wingbeat in every row.
 
     Rows are independent but for the one generator that draws their insects, in row order, whatever the others do.
     Batches of different sizes agree to rounding.
     """
 
-    reset_options = ("insect",)
     info_keys = (
         "insect",
         "weight_support",
@@ -129,29 +124,21 @@ class HoverVectorEnv(BatchEnv):
         )
         self.flyers, self.accelerator = self.objective.flyers, accelerator
 
-        cases = self.objective.cases
-        self._features, felt_power = wing_features(cases, self.flyers.r1_hat, self.problem)
         self._require_finite_power()
-        start = np.tile(np.array(FIRST_FELT, dtype=np.float32), (len(self.flyers), 1))
-        self._first_seen = np.concatenate([self._features, start], axis=1)
-        self._felt_power = felt_power.astype(self.dtype)
-        self._reference = StrokeReference(*(np.asarray(own, dtype=self.dtype) for own in cases.reference))
-
         super().__init__(
             num_envs,
-            single_observation_space=spaces.Box(
-                -OBSERVATION_LIMIT, OBSERVATION_LIMIT, (self._features.shape[1] + 3,), np.float32
-            ),
-            single_action_space=spaces.Box(-1.0, 1.0, (len(self.coordinates),), np.float32),
+            cases=self.objective.cases,
+            names=self.flyers.names,
+            r1_hat=self.flyers.r1_hat,
+            problem=self.problem,
+            dtype=self.dtype,
+            actions=len(self.coordinates),
             autoreset_mode=autoreset_mode,
             render_mode=render_mode,
             infos=infos,
             reward_space=spaces.Box(self.problem.reward_floor, 0.0, (2,), np.float64) if reward == "vector" else None,
         )
-        self._insect = np.zeros(num_envs, dtype=np.intp)
-        self._felt = np.zeros((num_envs, 3), dtype=np.float32)  # last Λ - 1, last log P*/P*_felt, fraction left
         self._stroke = {name: np.zeros(num_envs, dtype=self.dtype) for name in STROKE_PARAMETERS}
-        self._beaten = np.full(num_envs, NOT_YET, dtype=np.intp)  # the insect of each row's last wingbeat
 
     def _require_finite_power(self) -> None:
         """Refuse frequencies whose power the type of the computation cannot hold."""
@@ -164,31 +151,13 @@ class HoverVectorEnv(BatchEnv):
                 f"'{self.dtype.name}', whose numbers end before the power; allowed: a lower one"
             )
 
-    def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
-        """The option "insect" as row numbers."""
-        return prepared_insects(options, list(self.flyers.names), self.num_envs)
-
-    def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
-        drawn = self.np_random.integers(len(self.flyers), size=self.num_envs)
-        drawn = options.get("insect", drawn)
-        self._insect = np.where(mask, drawn, self._insect)
-        self._felt[mask] = FIRST_FELT
-        return {"insect": self.flyers.names[self._insect]}
-
     def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
-        reference = StrokeReference(*(own[self._insect] for own in self._reference))
-        strokes, clipped = self.coordinates.decode(actions.astype(self.dtype, copy=False), reference)
+        strokes, clipped = self.coordinates.decode(actions.astype(self.dtype, copy=False), self._own(self._insect))
         score = self.objective.score(self._insect, strokes)
-        power = np.maximum(score.specific_power, SMALLEST_POWER)
-        felt = score.weight_support - 1, np.log(power / self._felt_power[self._insect])
-        rows = slice(None) if mask.all() else mask
-        for column, value in enumerate(felt):
-            self._felt[rows, column] = seen(value)[rows]
-        self._felt[rows, -1] = 0.0
+        self._feel(score.weight_support, score.specific_power, mask)
         if self.render_mode is not None:
             for name, value in strokes.items():
                 np.copyto(self._stroke[name], value, where=mask)
-        self._beaten = np.where(mask, self._insect, self._beaten)
         reward = score.reward
         if self.reward_space is not None:
             reward = np.maximum(np.stack([score.power_term, -score.lift_deficit], axis=-1), self.problem.reward_floor)
@@ -252,24 +221,14 @@ class HoverVectorEnv(BatchEnv):
             "_optimality_gap": score.has_gap,
         }
 
-    def _observe(self) -> np.ndarray:
-        seen = np.empty(self.observation_space.shape or (), dtype=np.float32)
-        seen[:, :-3] = self._features[self._insect]
-        seen[:, -3:] = self._felt
-        return seen
-
     def _picture(self, row: int) -> np.ndarray:
         from flapenv.drawing import wingbeat_image
 
         return wingbeat_image(*self._last_beat(row), self.problem.model)
 
     def _last_beat(self, row: int) -> tuple[Insect, Stroke]:
-        """Insect and stroke of a row's last wingbeat; the insect's own stroke before an episode's first.
-
-        With SAME_STEP autoreset the next episode has begun already when the last beat is to be seen.
-        """
-        just_begun = self._felt[row, 2] == 1 and self.autoreset_mode is not AutoresetMode.SAME_STEP
-        if just_begun or self._beaten[row] == NOT_YET:
+        """Insect and stroke of a row's last wingbeat; the insect's own stroke before an episode's first."""
+        if not self._has_beaten(row):
             insect = self.flyers[int(self._insect[row])]
             return insect, insect.stroke
         values = {name: float(value[row]) for name, value in self._stroke.items()}

@@ -5,14 +5,12 @@ language of one stroke, which Python runs as it is and numba (the extra "fast") 
 elastic power and a k_tip that stays; everything else goes through the batch. Tests hold both against each other.
 """
 
-import functools
-import importlib.util
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from flapenv.aero.accelerators import Accelerator
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.aero.stroke import SMALLEST_SHAPE
 from flapenv.case import lift_constant
@@ -114,14 +112,6 @@ def beat(
     score(wing, lift, power, results)
 
 
-@functools.cache
-def _compiled_beat() -> Any:
-    """The same, compiled."""
-    from flapenv.envs.hover_compiled import beat
-
-    return beat
-
-
 def serves(model: HoverModel) -> bool:
     """Whether `beat` knows the model."""
     plain = model.is_plate and model.profile_drag == 0 and model.accounting == "elastic"
@@ -131,12 +121,20 @@ def serves(model: HoverModel) -> bool:
 class HoverOfOne:
     """The tables that `beat` reads, and a call of it."""
 
-    def __init__(self, objective: HoverObjective, coordinates: StrokeCoordinates, accelerator: Accelerator) -> None:
-        """Lay out the tables of an environment's coordinates and objective, whose model `serves` knows."""
-        self.compiled = accelerator == "numba" and importlib.util.find_spec("numba") is not None
+    def __init__(
+        self, objective: HoverObjective, coordinates: StrokeCoordinates, compiled: Callable[..., None] | None = None
+    ) -> None:
+        """Lay out the tables of an environment's coordinates and objective, whose model `serves` knows.
+
+        Args:
+            objective: of the environment.
+            coordinates: of the environment.
+            compiled: `beat` compiled, which takes arrays; None for `beat` itself, which takes lists.
+        """
+        self._compiled = compiled
         tables = _axes(coordinates, objective.dtype), _wings(objective), *objective.rule.points
         kept: list[Any] = [*tables, np.empty(objective.rule.nodes), np.empty(len(RESULTS))]
-        if not self.compiled:  # Python is quicker on lists than on arrays
+        if compiled is None:  # Python is quicker on lists than on arrays
             kept = [table.tolist() for table in kept]
         self._axes, self._wings, self._fractions, self._weights, self._sines, self._results = kept
         self._slack = 8 * float(np.finfo(objective.dtype).eps)
@@ -144,8 +142,8 @@ class HoverOfOne:
     def __call__(self, action: np.ndarray, number: int) -> list[float]:
         """What an action (n,) gives the wing of a number, in the order of `RESULTS`."""
         tables = self._axes, self._wings[number], self._fractions, self._weights, self._sines
-        if self.compiled:
-            _compiled_beat()(action, *tables, self._slack, self._results)
+        if self._compiled is not None:
+            self._compiled(action, *tables, self._slack, self._results)
             return self._results.tolist()
         beat(action.tolist(), *tables, self._slack, self._results)
         return self._results

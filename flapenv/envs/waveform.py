@@ -3,19 +3,17 @@
 from typing import Any
 
 import numpy as np
-from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
 from flapenv.aero.checks import require_flag, require_name
-from flapenv.aero.parameters import StrokeReference
 from flapenv.aero.spline_motion import SplineMotion
 from flapenv.case import hover_case, stack_cases
-from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
+from flapenv.envs.batch import Info, InfoChoice, refuse_unknown
 from flapenv.envs.describe import ACTION_HEADER, Row, described, markdown_table, stroke_rows
-from flapenv.envs.hover_batch import DEFAULT_PROBLEM, NOT_YET, ProblemChoice
-from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects, without_infeasible
+from flapenv.envs.hover_batch import DEFAULT_PROBLEM, ProblemChoice
+from flapenv.envs.insect_choice import InsectChoice, listed_insects, without_infeasible
+from flapenv.envs.one_beat import OneBeatEnv
 from flapenv.envs.single import SingleEnv
-from flapenv.envs.wing_features import OBSERVATION_LIMIT, wing_features
 from flapenv.insects import Insect
 from flapenv.problem import HoverProblem, as_problem
 from flapenv.waveform.coordinates import SPEED_FLOOR, Waveform, WaveformCoordinates
@@ -26,14 +24,13 @@ from flapenv.waveform.performance import peak_rates
 DEFAULT_KNOTS = 8
 
 
-class WaveformVectorEnv(BatchEnv):
+class WaveformVectorEnv(OneBeatEnv):
     """Batched `WaveformEnv`, which describes actions, observations and rewards: one step is one wingbeat in every row.
 
     Rows are independent but for the one generator that draws their insects, in row order, whatever the others do.
     Batches of different sizes agree to rounding.
     """
 
-    reset_options = ("insect",)
     info_keys = (
         "insect",
         "weight_support",
@@ -93,26 +90,19 @@ class WaveformVectorEnv(BatchEnv):
         self.insects = self._chosen_insects(insect, include_infeasible=include_infeasible)
         self.objective = WaveformObjective(self.insects, self.problem, self.coordinates, self.dtype)
 
-        cases = self.objective.cases
-        r1_hat = np.array([one.wing.r1_hat for one in self.insects])
-        self._features, self._felt_power = wing_features(cases, r1_hat, self.problem)
-        self._names = np.array([one.name for one in self.insects], dtype=object)
-        self._reference = StrokeReference(*(np.asarray(own, dtype=self.dtype) for own in cases.reference))
-
         super().__init__(
             num_envs,
-            single_observation_space=spaces.Box(
-                -OBSERVATION_LIMIT, OBSERVATION_LIMIT, (self._features.shape[1] + 3,), np.float32
-            ),
-            single_action_space=spaces.Box(-1.0, 1.0, (len(self.coordinates),), np.float32),
+            cases=self.objective.cases,
+            names=np.array([one.name for one in self.insects], dtype=object),
+            r1_hat=np.array([one.wing.r1_hat for one in self.insects]),
+            problem=self.problem,
+            dtype=self.dtype,
+            actions=len(self.coordinates),
             autoreset_mode=autoreset_mode,
             render_mode=render_mode,
             infos=infos,
         )
-        self._insect = np.zeros(num_envs, dtype=np.intp)
-        self._felt = np.zeros((num_envs, 3), dtype=np.float32)  # last Λ - 1, last log P*/P*_felt, fraction left
         self._actions = np.zeros((num_envs, len(self.coordinates)), dtype=np.float32)
-        self._beaten = np.full(num_envs, NOT_YET, dtype=np.intp)  # the insect of each row's last wingbeat
 
     def _chosen_insects(self, choice: InsectChoice, *, include_infeasible: bool) -> tuple[Insect, ...]:
         """The insects to draw from, with a warning about those that no waveform lifts."""
@@ -125,29 +115,12 @@ class WaveformVectorEnv(BatchEnv):
         dropped = isinstance(choice, str) and choice == "all" and not include_infeasible
         return without_infeasible(insects, margins, "waveform", dropped=dropped, stacklevel=4)
 
-    def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
-        """The option "insect" as row numbers."""
-        return prepared_insects(options, list(self._names), self.num_envs)
-
-    def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
-        drawn = self.np_random.integers(len(self.insects), size=self.num_envs)
-        drawn = options.get("insect", drawn)
-        self._insect = np.where(mask, drawn, self._insect)
-        self._felt[mask] = (0.0, 0.0, 1.0)
-        return {"insect": self._names[self._insect]}
-
     def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
         waveform, clipped = self.coordinates.decode(actions.astype(self.dtype, copy=False), self._own(self._insect))
         score = self.objective.score(self._insect, waveform)
-        power = np.log(score.specific_power / self._felt_power[self._insect])
-        felt = np.stack([score.weight_support - 1, power, np.zeros(self.num_envs)], axis=-1)
-        self._felt[mask], self._actions[mask] = felt[mask], actions[mask]
-        self._beaten = np.where(mask, self._insect, self._beaten)
+        self._feel(score.weight_support, score.specific_power, mask)
+        self._actions[mask] = actions[mask]
         return score.reward, mask.copy(), np.zeros(self.num_envs, dtype=bool), self._info(score, waveform, clipped)
-
-    def _own(self, rows: Any) -> StrokeReference:
-        """The own strokes of the insects at `rows`."""
-        return StrokeReference(*(own[rows] for own in self._reference))
 
     def _info(self, score: WaveformScore, waveform: Waveform, clipped: np.ndarray) -> Info:
         acceleration, pitch_rate = peak_rates(waveform, score.half_cycle)
@@ -170,10 +143,6 @@ class WaveformVectorEnv(BatchEnv):
             "_optimality_gap": score.known,
         }
 
-    def _observe(self) -> np.ndarray:
-        seen = np.concatenate([self._features[self._insect], self._felt], axis=1)
-        return np.clip(seen, -OBSERVATION_LIMIT, OBSERVATION_LIMIT)
-
     def _picture(self, row: int) -> np.ndarray:
         from flapenv.drawing import wingbeat_image
         from flapenv.waveform.pictures import waveform_image
@@ -184,12 +153,8 @@ class WaveformVectorEnv(BatchEnv):
         return waveform_image(insect, motion, self.problem.model)
 
     def _last_beat(self, row: int) -> tuple[Insect, SplineMotion | None]:
-        """Insect and motion of a row's last wingbeat; None before an episode's first.
-
-        With SAME_STEP autoreset the next episode has begun already when the last beat is to be seen.
-        """
-        just_begun = self._felt[row, 2] == 1 and self.autoreset_mode is not AutoresetMode.SAME_STEP
-        if just_begun or self._beaten[row] == NOT_YET:
+        """Insect and motion of a row's last wingbeat; None before an episode's first."""
+        if not self._has_beaten(row):
             return self.insects[self._insect[row]], None
         number = self._beaten[row]
         waveform, _ = self.coordinates.decode(self._actions[row].astype(self.dtype), self._own(number))
