@@ -19,6 +19,10 @@ GRADIENT_COST = 3
 """Wingbeats that one evaluation with its gradient counts: one forward, two more for the way back."""
 
 
+EXACT = 1e-9
+"""Of the averages: gaps are told to a millionth, and the optimum is as exact."""
+
+
 class BudgetSpentError(Exception):
     """Raised where a competitor asks for more wingbeats than it has; ends its search."""
 
@@ -66,7 +70,7 @@ class Budget:
         Raises:
             ValueError: if no stroke of the box carries the weight: there is no gap then.
         """
-        self.objective = HoverObjective([insect], problem)
+        self.objective = HoverObjective([insect], problem, tolerance=EXACT)
         self.best = self.objective.flyers.optima[0]
         if not self.best.feasible:
             raise ValueError(

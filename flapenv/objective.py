@@ -71,6 +71,7 @@ class HoverObjective:
         gap_to: GapTo = "optimum",
         threads: int = 1,
         accelerator: Accelerator = "numpy",
+        tolerance: float = QUADRATURE_TOLERANCE,
     ) -> None:
         """Solve the references of every insect.
 
@@ -80,6 +81,7 @@ class HoverObjective:
             dtype: of the arrays that `score` computes with.
             gap_to: as `Flyers` takes it.
             threads: how many work at once on large batches.
+            tolerance: of the averages, relative.
             accelerator: what computes the averages, one of `flapenv.aero.accelerators.ACCELERATORS`.
 
         Raises:
@@ -91,7 +93,7 @@ class HoverObjective:
         if accelerator != "numpy":
             self._require_use(accelerator)
         self.flyers = Flyers(insects, problem, gap_to=gap_to)
-        self.rule = problem.box.time_rule(tolerance=QUADRATURE_TOLERANCE)
+        self.rule = problem.box.time_rule(tolerance=tolerance)
 
         references = self.flyers.references
         feasible, bound = references.feasible, references.power

@@ -69,7 +69,8 @@ def as_like(reference: Real, *values: np.ndarray) -> tuple[Real, ...]:
     """NumPy arrays in the library and the floating type of `reference`, an array or a tensor."""
     if is_tensor(reference):
         torch: ModuleType = sys.modules["torch"]
-        return tuple(torch.as_tensor(v, dtype=reference.dtype, device=reference.device) for v in values)
+        # copies: checked and kept arrays are read-only, tensors may not be
+        return tuple(torch.tensor(v, dtype=reference.dtype, device=reference.device) for v in values)
     return tuple(value.astype(reference.dtype, copy=False) for value in values)
 
 

@@ -13,10 +13,11 @@ from typing import Any
 
 from flapenv.aero.arrays import Real, as_arrays, as_like
 from flapenv.aero.force_laws import ForceLaw
+from flapenv.aero.quadrature import graded_rule
 from flapenv.aero.stroke import flap_bend, flap_speed, pitch_bend, pitch_speed, pitch_waveform
 from flapenv.aero.wingbeat import TimeRule
 
-NODE_FACTOR = 6
+NODE_FACTOR = 9
 """Nodes for each one that the smooth averages need: where the power changes sign the integrand has corners."""
 SMALLEST_POWER = 1e-30
 """Stands in for zero where a power divides [W/kg]."""
@@ -64,7 +65,7 @@ def positive_power(
     )
     flap_inertia, product, pitch_inertia, added_mass = (inertia[..., i, None] for i in range(4))
     omega = 2 * math.pi * frequency
-    fractions, weights = as_like(pitch_phase, *rule.refined(NODE_FACTOR).points)
+    fractions, weights = as_like(pitch_phase, *graded_rule(NODE_FACTOR * rule.nodes))
     half_turns = xp.round(pitch_phase / math.pi)
     sense = (1 - 2 * (half_turns % 2))[..., None]
     before = (half_turns * math.pi - pitch_phase + math.pi / 2)[..., None]  # from stroke to pitch reversal
