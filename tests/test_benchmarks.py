@@ -1,5 +1,7 @@
 """The benchmark runs; what it measures is never asserted."""
 
+from pathlib import Path
+
 import pytest
 
 from benchmarks import profile, speed
@@ -25,6 +27,13 @@ def test_every_case_runs_and_the_table_has_both_ratios(
         "x oracle",
     ):
         assert word in out
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/performance.md"])
+def test_the_pages_show_every_case(page: str) -> None:
+    text = (Path(__file__).parents[1] / page).read_text(encoding="utf-8")
+    for name, _, _ in speed.cases():
+        assert name.split(", error")[0] in text, "make bench"
 
 
 def test_the_profile_has_the_floor_and_the_parts_of_a_step(
