@@ -113,6 +113,7 @@ class HoverVectorEnv(OneBeatEnv):
         own: dict[str, Any] = {"pool_size": pool_size, "pool_seed": pool_seed, "pool_split": pool_split}
         own |= {"leave_out": leave_out, "gap_to": gap_to}
         if isinstance(insect, str) and insect == RANDOM_WING:
+            refuse_unused({"include_infeasible": include_infeasible}, type(self), "insect = 'all'")
             insects: Any = choose_pool(
                 self.problem, size=pool_size, seed=pool_seed, split=pool_split, leave_out=leave_out
             )

@@ -92,6 +92,7 @@ def test_with_the_frequency_fixed_every_wing_can_hover() -> None:
     [
         ({"insect": "hawkmoth", "pool_size": 7}, ValueError, "pool_size = 7 belongs to insect = 'random-wing'"),
         ({"insect": "all", "gap_to": "optimum"}, ValueError, "gap_to = 'optimum' belongs to"),
+        ({"insect": "random-wing", "include_infeasible": True}, ValueError, "include_infeasible = True belongs to"),
         ({"insect": "random-wing", "pool_size": 0}, ValueError, "pool_size = 0 "),
         ({"insect": "random-wing", "pool_seed": 0.5}, TypeError, "pool_seed = 0.5 "),
         ({"insect": "random-wing", "pool_split": "trian"}, ValueError, "pool_split = 'trian' .*did you mean 'train'"),
