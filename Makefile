@@ -30,7 +30,7 @@ $(FLOOR)/.installed: pyproject.toml constraints-floor.txt
 	@touch $@
 
 train: $(STAMP)  ## Train one policy for all eight insects and print the comparison (about two minutes)
-	$(BIN)/python train.py $(ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python train.py $(ARGS)
 
 test: lint  ## Lint, type-check and run every test, the slow learning tests too
 	$(BIN)/python -m pytest $(ARGS)
