@@ -1,7 +1,7 @@
 """The reward and the gaps: one batched objective for environments, agents and optimisers."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -51,6 +51,36 @@ class Score:
     optimality_gap: np.ndarray
     has_gap: np.ndarray
     has_bound: np.ndarray
+
+
+def penalised(
+    weight_support: np.ndarray,
+    specific_power: np.ndarray,
+    reference: Mapping[str, np.ndarray],
+    has_gap: np.ndarray,
+    reward_floor: float,
+) -> dict[str, np.ndarray]:
+    """Reward, its terms and the gaps, by their names in `Score`; arrays of shape (n,).
+
+    Args:
+        weight_support: Λ [-].
+        specific_power: P* [W/kg].
+        reference: "bound" and "optimum" [W/kg], "penalty", "bound_charge" and "charge" of each row [-].
+        has_gap: whether the optimum of the row is known.
+        reward_floor: of the problem.
+    """
+    deficit = np.maximum(0, 1 - weight_support)
+    power_term = -specific_power / reference["bound"]
+    lift_term = -reference["penalty"] * deficit
+    gap = specific_power / reference["optimum"] - 1 + reference["charge"] * deficit
+    return {
+        "lift_deficit": deficit,
+        "power_term": power_term,
+        "lift_term": lift_term,
+        "reward": np.maximum(power_term + lift_term, reward_floor),
+        "bound_gap": -power_term - 1 + reference["bound_charge"] * deficit,
+        "optimality_gap": np.where(has_gap, gap, 0),
+    }
 
 
 class HoverObjective:
@@ -171,19 +201,10 @@ class HoverObjective:
         weight_support, specific_power = hover_averages(self.rows(index), self.problem.model, **strokes, **options)
         reference = {name: value[index] for name, value in self.reference.items()}
         has_gap = self.has_gap[index]
-        deficit = np.maximum(0, 1 - weight_support)
-        power_term = -specific_power / reference["bound"]
-        lift_term = -reference["penalty"] * deficit
-        gap = specific_power / reference["optimum"] - 1 + reference["charge"] * deficit
         return Score(
             weight_support=weight_support,
             specific_power=specific_power,
-            lift_deficit=deficit,
-            power_term=power_term,
-            lift_term=lift_term,
-            reward=np.maximum(power_term + lift_term, self.problem.reward_floor),
-            bound_gap=-power_term - 1 + reference["bound_charge"] * deficit,
-            optimality_gap=np.where(has_gap, gap, 0),
+            **penalised(weight_support, specific_power, reference, has_gap, self.problem.reward_floor),
             has_gap=has_gap,
             has_bound=np.full(len(has_gap), self.problem.model.has_proven_bound),
         )

@@ -1,8 +1,6 @@
-"""What every batched environment of the family shares: autoreset written once, reset masks, action checks, infos."""
+"""What every batched environment of the family shares: autoreset written once, reset masks, infos."""
 
-import inspect
 from abc import abstractmethod
-from collections.abc import Sequence
 from typing import Any
 
 import gymnasium as gym
@@ -11,134 +9,19 @@ from gymnasium import error, spaces
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from flapenv.aero.checks import allowed, require_count, require_name
+from flapenv.aero.checks import require_count
+from flapenv.envs.arguments import (
+    RENDER_MODES,
+    InfoChoice,
+    as_autoreset_mode,
+    checked_actions,
+    require_infos,
+    require_options,
+    require_render_mode,
+    require_seed,
+)
 
 Info = dict[str, Any]
-RENDER_MODES = ("rgb_array",)
-
-
-def as_autoreset_mode(value: AutoresetMode | str) -> AutoresetMode:
-    """An `AutoresetMode` from itself, its name ("SAME_STEP") or its value ("SameStep").
-
-    Raises:
-        ValueError: for anything else.
-    """
-    for mode in AutoresetMode if isinstance(value, AutoresetMode | str) else ():
-        if value in (mode, mode.name, mode.value):
-            return mode
-    raise ValueError(f"autoreset_mode = {value!r} is unknown; {allowed(value, [m.name for m in AutoresetMode])}")
-
-
-InfoChoice = str | Sequence[str]
-"""Which infos are wanted: "all", "none" or their keys."""
-
-
-def require_infos(infos: Any, known: tuple[str, ...]) -> tuple[str, ...]:
-    """The keys of the infos that are wanted.
-
-    Raises:
-        TypeError: for another kind of value.
-        ValueError: for an unknown key.
-    """
-    if isinstance(infos, str):
-        return known if require_name("infos", infos, ("all", "none")) == "all" else ()
-    if not isinstance(infos, Sequence):
-        raise TypeError(f"infos = {infos!r} is not allowed; allowed: 'all', 'none' or a list of keys")
-    return tuple(require_name("infos key", key, known) for key in infos)
-
-
-def require_render_mode(value: str | None) -> str | None:
-    """`value` if it can be rendered.
-
-    Raises:
-        ValueError: for an unknown mode.
-    """
-    if value is not None and value not in RENDER_MODES:
-        raise ValueError(f"render_mode = {value!r} is unknown; {allowed(value, RENDER_MODES)}, or None")
-    return value
-
-
-def require_seed(seed: Any) -> int | None:
-    """A seed as Gymnasium takes it.
-
-    Raises:
-        TypeError: if it is not a whole number.
-        ValueError: if it is negative.
-    """
-    return None if seed is None else require_count("seed", seed, low=0)
-
-
-def require_options(options: dict[str, Any] | None, known: tuple[str, ...]) -> dict[str, Any]:
-    """The reset options, all of them known.
-
-    Raises:
-        ValueError: for an unknown key.
-    """
-    if options is not None and not isinstance(options, dict):
-        raise TypeError(f"options = {options!r} are not allowed; allowed: a dict with keys of {known}, or None")
-    options = dict(options or {})
-    for key in options:
-        if key not in known:
-            raise ValueError(f"reset option {key!r} = {options[key]!r} is unknown; {allowed(key, known)}")
-    return options
-
-
-def checked_actions(field: str, actions: Any, shape: tuple[int, ...] | None) -> np.ndarray:
-    """Actions as float32, finite and of the right shape; those beyond ±1 stay beyond it.
-
-    Raises:
-        TypeError: if they are not numbers.
-        ValueError: if they have another shape, or NaN or inf.
-    """
-    try:
-        array = np.asarray(actions)
-    except ValueError:  # rows of different lengths
-        array = np.empty(0, dtype=object)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{field} = {actions!r} are not real numbers; allowed: floats in [-1, 1]")
-    if array.shape != shape:
-        raise ValueError(f"{field} with shape {array.shape} is not allowed; allowed: {shape}")
-    if not np.isfinite(array).all():
-        row = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise ValueError(
-            f"{field}[{', '.join(map(str, row))}] = {array[row]} is not allowed; allowed: finite, in [-1, 1] "
-            "(beyond it they are clipped)"
-        )
-    return np.clip(array, -2, 2).astype(np.float32)  # beyond ±1 still shows as clipped, and no cast overflows
-
-
-def arguments_of(environment: type) -> tuple[str, ...]:
-    """Names of the arguments of an environment's constructor."""
-    names = inspect.signature(environment).parameters
-    return tuple(name for name, parameter in names.items() if parameter.kind is not parameter.VAR_KEYWORD)
-
-
-def refuse_unknown(unknown: dict[str, Any], environment: type, *, hidden: tuple[str, ...] = ()) -> None:
-    """Name an argument that does not exist, and those that do.
-
-    Raises:
-        TypeError: for the first of `unknown`.
-    """
-    known = [name for name in arguments_of(environment) if name not in hidden]
-    for name, value in unknown.items():
-        raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
-
-
-def refuse_unused(arguments: dict[str, Any], environment: type, when: str) -> None:
-    """Refuse arguments that differ from their defaults and would change nothing.
-
-    Args:
-        arguments: by name.
-        environment: whose constructor holds the defaults.
-        when: what they belong to.
-
-    Raises:
-        ValueError: for the first of them.
-    """
-    known = inspect.signature(environment).parameters
-    for name, value in arguments.items():
-        if value != known[name].default:
-            raise ValueError(f"{name} = {value!r} belongs to {when} and would change nothing; allowed: leave it out")
 
 
 class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):

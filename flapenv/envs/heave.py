@@ -11,7 +11,8 @@ from flapenv.aero.checks import require_count, require_name, require_real
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import StrokeCoordinates
-from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
+from flapenv.envs.arguments import InfoChoice, refuse_unknown
+from flapenv.envs.batch import BatchEnv, Info
 from flapenv.envs.describe import action_table, described, markdown_table, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.single import SingleEnv

@@ -8,7 +8,8 @@ import numpy as np
 
 from flapenv.aero.accelerators import Accelerator
 from flapenv.coordinates import StrokeCoordinates
-from flapenv.envs.batch import Info, checked_actions
+from flapenv.envs.arguments import checked_actions
+from flapenv.envs.batch import Info
 from flapenv.envs.describe import action_table, described, stroke_rows
 from flapenv.envs.hover_batch import HoverVectorEnv
 from flapenv.envs.hover_of_one import HoverOfOne, serves

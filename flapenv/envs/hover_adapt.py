@@ -15,7 +15,8 @@ from flapenv.adapt.task import BEATS, LEAST_MARGIN, NOISE, PROBLEM, AdaptTask, D
 from flapenv.adapt.tuning import NAMES, shipped, tuned_for
 from flapenv.aero.checks import require_count, require_flag, require_name, require_scalar
 from flapenv.aero.parameters import STROKE_PARAMETERS
-from flapenv.envs.batch import BatchEnv, Info, InfoChoice, refuse_unknown
+from flapenv.envs.arguments import InfoChoice, refuse_unknown
+from flapenv.envs.batch import BatchEnv, Info
 from flapenv.envs.describe import action_table, described, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.last_beat import LastBeat

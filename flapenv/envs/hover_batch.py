@@ -13,7 +13,8 @@ from flapenv.aero.checks import require_count, require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
-from flapenv.envs.batch import Info, InfoChoice, refuse_unknown, refuse_unused
+from flapenv.envs.arguments import InfoChoice, refuse_unknown, refuse_unused
+from flapenv.envs.batch import Info
 from flapenv.envs.hover_of_one import HoverOfOne
 from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool
 from flapenv.envs.one_beat import FIRST_FELT, SMALLEST_POWER, OneBeatEnv

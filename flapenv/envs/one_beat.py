@@ -8,7 +8,8 @@ from gymnasium.vector import AutoresetMode
 
 from flapenv.aero.parameters import StrokeReference
 from flapenv.case import HoverCase
-from flapenv.envs.batch import BatchEnv, Info, InfoChoice
+from flapenv.envs.arguments import InfoChoice
+from flapenv.envs.batch import BatchEnv, Info
 from flapenv.envs.insect_choice import prepared_insects
 from flapenv.envs.wing_features import OBSERVATION_LIMIT, seen, wing_features
 from flapenv.problem import HoverProblem

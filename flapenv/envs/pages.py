@@ -6,7 +6,7 @@ from pathlib import Path
 import gymnasium as gym
 from gymnasium.envs.registration import load_env_creator
 
-from flapenv.envs.batch import arguments_of
+from flapenv.envs.arguments import arguments_of
 from flapenv.envs.describe import markdown_table
 from flapenv.envs.registration import ENV_IDS
 

@@ -6,15 +6,8 @@ import gymnasium as gym
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from flapenv.envs.batch import (
-    BatchEnv,
-    Info,
-    arguments_of,
-    checked_actions,
-    refuse_unknown,
-    require_options,
-    require_seed,
-)
+from flapenv.envs.arguments import arguments_of, checked_actions, refuse_unknown, require_options, require_seed
+from flapenv.envs.batch import BatchEnv, Info
 
 BATCH_ONLY = ("num_envs", "autoreset_mode")
 """Arguments of a batch that a single environment has no use for."""

@@ -8,7 +8,8 @@ from gymnasium.vector import AutoresetMode
 from flapenv.aero.checks import require_flag, require_name
 from flapenv.aero.spline_motion import SplineMotion
 from flapenv.case import hover_case, stack_cases
-from flapenv.envs.batch import Info, InfoChoice, refuse_unknown
+from flapenv.envs.arguments import InfoChoice, refuse_unknown
+from flapenv.envs.batch import Info
 from flapenv.envs.describe import ACTION_HEADER, Row, described, markdown_table, stroke_rows
 from flapenv.envs.hover_batch import DEFAULT_PROBLEM, ProblemChoice
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, without_infeasible

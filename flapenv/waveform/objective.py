@@ -8,7 +8,7 @@ import numpy as np
 
 from flapenv.case import hover_case, stack_cases
 from flapenv.insects import Insect
-from flapenv.objective import INFEASIBLE_PENALTY, LEAST_GAP_WEIGHT, LEAST_PENALTY
+from flapenv.objective import INFEASIBLE_PENALTY, LEAST_GAP_WEIGHT, LEAST_PENALTY, penalised
 from flapenv.optimum import lower_bound
 from flapenv.problem import HoverProblem
 from flapenv.waveform.coordinates import Waveform, WaveformCoordinates
@@ -109,18 +109,10 @@ class WaveformObjective:
         weight_support, specific_power, half_cycle = waveform_performance(case, self.problem.model, waveform)
         own = {name: value[index] for name, value in self._reference.items()}
         known = self._is_known[index]
-        deficit = np.maximum(0, 1 - weight_support)
-        power_term, lift_term = -specific_power / own["bound"], -own["penalty"] * deficit
-        gap = specific_power / own["optimum"] - 1 + own["charge"] * deficit
         return WaveformScore(
             weight_support=weight_support,
             specific_power=specific_power,
-            lift_deficit=deficit,
-            power_term=power_term,
-            lift_term=lift_term,
-            reward=np.maximum(power_term + lift_term, self.problem.reward_floor),
-            bound_gap=-power_term - 1 + own["bound_charge"] * deficit,
-            optimality_gap=np.where(known, gap, 0),
+            **penalised(weight_support, specific_power, own, known, self.problem.reward_floor),
             known=known,
             half_cycle=half_cycle,
         )
