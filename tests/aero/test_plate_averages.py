@@ -2,6 +2,7 @@
 
 import concurrent.futures
 import multiprocessing
+import threading
 import tracemalloc
 from typing import Any
 
@@ -63,19 +64,24 @@ def test_threads_do_not_share_what_they_work_on(rng: np.random.Generator) -> Non
 
 def test_a_forked_process_has_threads_of_its_own() -> None:
     def work(answer: Any = None) -> None:
-        seen: list[slice] = []
-        in_threads(seen.append, [slice(0, 1), slice(1, 2)], 2)
-        if answer is not None:
-            answer.put(len(seen))
+        both = threading.Barrier(2, timeout=10)  # neither part ends without the other: two threads, or none
 
-    work()  # the pool of this process exists
+        def wait(part: slice) -> None:
+            both.wait()
+
+        in_threads(wait, [slice(0, 1), slice(1, 2)], 2)
+        if answer is not None:
+            answer.put(2)
+
+    work()  # the pool of this process has its threads
     context = multiprocessing.get_context("fork")
     answer = context.Queue()
     child = context.Process(target=work, args=(answer,))
     child.start()
-    assert answer.get(timeout=20) == 2
     child.join(20)
+    child.kill()  # where it hangs, the test does not
     assert child.exitcode == 0
+    assert answer.get(timeout=1) == 2
 
 
 def test_memory_does_not_grow_with_the_batch_beyond_its_results(rng: np.random.Generator) -> None:
