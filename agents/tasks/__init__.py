@@ -1,0 +1,1 @@
+"""What agents are trained for: one file a task, each with its environment and its own way to judge a policy."""

@@ -1,0 +1,62 @@
+"""What every task offers to training, evaluation and the benchmark."""
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from gymnasium.vector import VectorEnv
+
+from flapenv.aero.checks import record
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+class Predictor(Protocol):
+    """Anything that maps observations to actions, such as a Stable-Baselines3 model."""
+
+    def predict(self, observation: np.ndarray, *, deterministic: bool) -> tuple[np.ndarray, Any]:
+        """Actions for a batch of observations."""
+
+
+@record
+class Verdict:
+    """How a policy did on its task; nothing is chosen by it.
+
+    Attributes:
+        mean: distance to the task's reference [-]: 0 is the reference, 0.01 one percent worse, negative better.
+        worst: the same where it is largest: of the insects, or the 95th percentile of many wings.
+        text: the table that people read.
+        results: the task's part of results.json; plain numbers, strings, lists and dicts, None for what is not known.
+    """
+
+    mean: float
+    worst: float
+    text: str
+    results: dict[str, Any]
+
+
+class Task(Protocol):
+    """An environment with its arguments, and how a policy of it is judged."""
+
+    @property
+    def environment(self) -> str:
+        """The id."""
+
+    @property
+    def distance(self) -> str:
+        """What `Verdict.mean` is, in a few words: "gap to the optimum"."""
+
+    def vector_env(self, rows: int) -> VectorEnv:
+        """The environment to train in: SAME_STEP, no infos."""
+
+    def glance(self, policy: Predictor) -> tuple[float, float]:
+        """`Verdict.mean` and `Verdict.worst` in well under a second, for the learning curve."""
+
+    def judge(self, policy: Predictor) -> Verdict:
+        """The verdict, noise-free and in double precision where the environment offers it."""
+
+    def draw(self, policy: Predictor) -> "Figure":
+        """A picture of what was learned."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The arguments, as config.json keeps them and the task's constructor takes them back."""
