@@ -10,7 +10,6 @@ from flapenv.aero.arrays import as_numpy
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.insects import Insect
 from flapenv.objective import HoverObjective
-from flapenv.performance import hover_averages
 from flapenv.problem import HoverProblem
 
 CARRIED = 1e-4
@@ -113,11 +112,9 @@ class Budget:
         """The cost of a tensor of points (m, n) with its gradient, `GRADIENT_COST` wingbeats each, shape (m,)."""
         self._spend(GRADIENT_COST * len(points))
         strokes, _ = self.coordinates.decode(points, self.insect.reference)
-        case = self.objective.cases.rows(np.zeros(1, dtype=np.intp))
-        weight, power = hover_averages(case, self.problem.model, **strokes, rule=self.objective.rule)
-        deficit = (1 - weight).clip(0)
+        weight, power, cost = self.objective.cost(np.zeros(len(points), dtype=np.intp), strokes)
         self._note(as_numpy(power), as_numpy(weight))
-        return power / self.best.reference_power + float(self.objective.lift_penalty[0]) * deficit
+        return cost
 
     def _spend(self, wingbeats: int) -> None:
         if wingbeats > self.left:

@@ -10,46 +10,48 @@ import numpy as np
 from stable_baselines3.common.callbacks import BaseCallback
 from tqdm import tqdm
 
-from agents.comparison import Comparison
 from agents.policy import HoverPolicy
-from agents.presets import PPOPreset
+from agents.presets.ppo import PPOSettings
 from agents.run_folder import CURVE, POLICY, write_atomically
+from agents.tasks import Task
 
 CURVE_COLUMNS = ("wingbeats", "seconds", "mean_reward", "mean_gap", "worst_gap")
 CURVE_POINTS, CHECKPOINTS = 200, 10
 """Points of the learning curve and saved policies over a training budget."""
+FINEST = 0.1
+"""Early points of the learning curve lie a tenth of what was flown apart, for a logarithmic axis."""
 
 
 class NoiseFloor(BaseCallback):
     """Lowers the policy's noise floor with the budget that is left."""
 
-    def __init__(self, preset: PPOPreset) -> None:
-        """Follow the preset's schedule."""
+    def __init__(self, settings: PPOSettings) -> None:
+        """Follow the settings' schedule."""
         super().__init__()
-        self.preset = preset
+        self.settings = settings
 
     def _on_rollout_start(self) -> None:
         policy = self.model.policy
         assert isinstance(policy, HoverPolicy)
-        policy.noise_floor = self.preset.noise_floor_at(1 - self.num_timesteps / self.preset.wingbeats)
+        policy.noise_floor = self.settings.noise_floor_at(1 - self.num_timesteps / self.settings.wingbeats)
 
     def _on_step(self) -> bool:
         return True
 
 
 class LearningCurve(BaseCallback):
-    """Writes gaps of the noise-free policy against wingbeats and seconds, to a CSV file and to TensorBoard.
+    """Writes how far the noise-free policy is off against wingbeats and seconds, to a CSV file and to TensorBoard.
 
-    The gaps are watched only: nothing is chosen by them.
+    That is watched only: nothing is chosen by it. What watching costs is not counted as seconds of training.
     """
 
-    def __init__(self, out: Path, comparison: Comparison, budget: int) -> None:
-        """Write about `CURVE_POINTS` points over `budget` wingbeats to `out`."""
+    def __init__(self, out: Path, task: Task, budget: int) -> None:
+        """Write about `CURVE_POINTS` points over `budget` wingbeats to `out`, more closely at the beginning."""
         super().__init__()
-        self.path, self.comparison = out / CURVE, comparison
+        self.path, self.task = out / CURVE, task
         with self.path.open("w", encoding="utf-8", newline="") as file:
             csv.writer(file).writerow(CURVE_COLUMNS)
-        self.started = time.monotonic()
+        self.started, self.watching = time.monotonic(), 0.0
         self.every, self.next = budget / CURVE_POINTS, 0.0
         self.rows: list[tuple[float, ...]] = []
         self._rewards: list[float] = []
@@ -64,18 +66,20 @@ class LearningCurve(BaseCallback):
     def _on_rollout_end(self) -> None:
         if self.num_timesteps < self.next:
             return
-        self.next += self.every
+        step = min(self.every, max(self.num_timesteps * FINEST, self.every / CURVE_POINTS))
+        self.next = self.num_timesteps + step
         self.measure()
 
     def measure(self) -> None:
         """Add a point for the policy as it is now, unless nothing was flown since the last."""
         if not self._rewards:
             return
-        gaps = self.comparison.gaps(self.model)
+        began = time.monotonic()
+        mean, worst = self.task.glance(self.model)
         reward = float(np.mean(self._rewards))
         self._rewards.clear()
-        mean, worst = (float(np.mean(gaps)), float(np.max(gaps))) if len(gaps) else (float("nan"), float("nan"))
-        row = (self.num_timesteps, round(time.monotonic() - self.started, 3), reward, mean, worst)
+        row = (self.num_timesteps, round(began - self.started - self.watching, 3), reward, mean, worst)
+        self.watching += time.monotonic() - began
         self.rows.append(row)
         with self.path.open("a", encoding="utf-8", newline="") as file:
             csv.writer(file).writerow(row)

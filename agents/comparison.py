@@ -1,10 +1,11 @@
 """What a policy learned beside the proven optimum and CFD: evaluation, table and results."""
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
+from agents.predictor import Predictor
 from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
@@ -14,13 +15,6 @@ from flapenv.optimum import Optimum
 from flapenv.performance import evaluate
 from flapenv.problem import HoverProblem
 from flapenv.tables import text_table
-
-
-class Predictor(Protocol):
-    """Anything that maps observations to actions, such as a Stable-Baselines3 model."""
-
-    def predict(self, observation: np.ndarray, *, deterministic: bool) -> tuple[np.ndarray, Any]:
-        """Actions for a batch of observations."""
 
 
 @record
@@ -118,6 +112,11 @@ def mean_gap(results: Sequence[InsectResult]) -> float | None:
     """Mean gap of the feasible insects [-]; None where there is none."""
     gaps = [result.gap for result in results if result.gap is not None]
     return float(np.mean(gaps)) if gaps else None
+
+
+def worst_gap(results: Sequence[InsectResult]) -> float | None:
+    """Largest gap of the feasible insects [-]; None where there is none."""
+    return max((result.gap for result in results if result.gap is not None), default=None)
 
 
 def comparison_table(results: Sequence[InsectResult]) -> str:

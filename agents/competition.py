@@ -269,7 +269,7 @@ def save(result: CompetitionResult, folder: Path) -> None:
         result: what came out.
         folder: there already, of `open_run_folder`.
     """
-    from agents.pictures import draw_competition
+    from agents.competition_picture import draw_competition
 
     config = result.config
     write_json(

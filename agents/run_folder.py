@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 CONFIG, RESULTS, POLICY, CURVE = "config.json", "results.json", "policy.zip", "curve.csv"
-CURVE_PICTURE, STROKES_PICTURE, TENSORBOARD = "learning_curve.png", "strokes.png", "tensorboard"
-FILES = (CONFIG, RESULTS, POLICY, CURVE, CURVE_PICTURE, STROKES_PICTURE, TENSORBOARD)
+ACTOR, CARD = "policy.safetensors", "policy.json"
+CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD = "learning_curve.png", "learned.png", "tensorboard"
+FILES = (CONFIG, RESULTS, POLICY, ACTOR, CARD, CURVE, CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD)
 RUNS = Path("runs")
-PACKAGES = ("flapenv", "gymnasium", "numpy", "scipy", "stable-baselines3", "torch")
+PACKAGES = ("flapenv", "gymnasium", "numpy", "scipy", "sb3-contrib", "stable-baselines3", "torch")
 
 
 def open_run_folder(out: Path | None, name: str) -> Path:

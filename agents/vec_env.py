@@ -19,8 +19,12 @@ class GymnasiumVecEnv(VecEnv):
     Attributes and methods are those of the vector environment, the same for every row.
     """
 
-    def __init__(self, venv: VectorEnv) -> None:
+    def __init__(self, venv: VectorEnv, *, reward_scale: float = 1.0) -> None:
         """Wrap `venv`.
+
+        Args:
+            venv: with SAME_STEP autoreset.
+            reward_scale: what rewards are multiplied by before a learner sees them.
 
         Raises:
             ValueError: if its autoreset mode is not SAME_STEP.
@@ -28,7 +32,7 @@ class GymnasiumVecEnv(VecEnv):
         mode = venv.metadata.get("autoreset_mode")
         if mode is not AutoresetMode.SAME_STEP:
             raise ValueError(f"autoreset_mode = {mode} is not allowed; allowed: AutoresetMode.SAME_STEP")
-        self.venv = venv
+        self.venv, self.reward_scale = venv, reward_scale
         self._actions = np.zeros(0)
         super().__init__(venv.num_envs, venv.single_observation_space, venv.single_action_space)
 
@@ -60,7 +64,8 @@ class GymnasiumVecEnv(VecEnv):
                 rows[i] = final
                 rows[i]["terminal_observation"] = final_obs[i]
             rows[i]["TimeLimit.truncated"] = bool(truncations[i] and not terminations[i])
-        return np.asarray(observations), np.asarray(rewards, dtype=np.float32), dones, rows
+        scaled = np.asarray(self.reward_scale * rewards, dtype=np.float32)
+        return np.asarray(observations), scaled, dones, rows
 
     def close(self) -> None:
         """Close the vector environment."""

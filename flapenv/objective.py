@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero.accelerators import Accelerator, plate_kernel
+from flapenv.aero.arrays import as_arrays, as_like
 from flapenv.aero.checks import record
 from flapenv.case import HoverCase
 from flapenv.insects import Insect
@@ -187,6 +188,23 @@ class HoverObjective:
         """The numbers of the insects at `index`, as arrays of the objective's type."""
         return self._cases.rows(index, None)
 
+    def averages(self, index: np.ndarray, strokes: dict[str, Any]) -> tuple[Any, Any]:
+        """Λ [-] and P* [W/kg] of one stroke for each row, arrays, or tensors that keep their gradient, shape (n,).
+
+        Args:
+            index: which insect each row is, shape (n,).
+            strokes: the stroke's fields by name, each of shape (n,), inside the box.
+        """
+        options: dict[str, Any] = {"rule": self.rule, "threads": self.threads, "kernel": self.kernel}
+        return hover_averages(self.rows(index), self.problem.model, **strokes, **options)
+
+    def cost(self, index: np.ndarray, strokes: dict[str, Any]) -> tuple[Any, Any, Any]:
+        """Λ, P* and P*/P*_ref + λ max(0, 1-Λ), the reward's negative without its floor; arguments as `averages`."""
+        weight_support, specific_power = self.averages(index, strokes)
+        bound, penalty = (as_like(specific_power, self.reference[name][index])[0] for name in ("bound", "penalty"))
+        xp, deficit = as_arrays(1 - weight_support)
+        return weight_support, specific_power, specific_power / bound + penalty * xp.clip(deficit, 0, None)
+
     def score(self, index: np.ndarray, strokes: dict[str, Any]) -> Score:
         """Score one stroke for each row.
 
@@ -197,8 +215,7 @@ class HoverObjective:
         Returns:
             Arrays of shape (n,).
         """
-        options: dict[str, Any] = {"rule": self.rule, "threads": self.threads, "kernel": self.kernel}
-        weight_support, specific_power = hover_averages(self.rows(index), self.problem.model, **strokes, **options)
+        weight_support, specific_power = self.averages(index, strokes)
         reference = {name: value[index] for name, value in self.reference.items()}
         has_gap = self.has_gap[index]
         return Score(

@@ -2,20 +2,13 @@
 
 from typing import TYPE_CHECKING, Any, Protocol
 
-import numpy as np
 from gymnasium.vector import VectorEnv
 
+from agents.predictor import Predictor
 from flapenv.aero.checks import record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-class Predictor(Protocol):
-    """Anything that maps observations to actions, such as a Stable-Baselines3 model."""
-
-    def predict(self, observation: np.ndarray, *, deterministic: bool) -> tuple[np.ndarray, Any]:
-        """Actions for a batch of observations."""
 
 
 @record
@@ -23,14 +16,15 @@ class Verdict:
     """How a policy did on its task; nothing is chosen by it.
 
     Attributes:
-        mean: distance to the task's reference [-]: 0 is the reference, 0.01 one percent worse, negative better.
+        mean: distance to the task's reference [-]: 0 is the reference, 0.01 one percent worse, negative better; None
+            where there is no reference.
         worst: the same where it is largest: of the insects, or the 95th percentile of many wings.
         text: the table that people read.
         results: the task's part of results.json; plain numbers, strings, lists and dicts, None for what is not known.
     """
 
-    mean: float
-    worst: float
+    mean: float | None
+    worst: float | None
     text: str
     results: dict[str, Any]
 

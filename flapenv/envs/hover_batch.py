@@ -165,6 +165,22 @@ class HoverVectorEnv(OneBeatEnv):
             reward = np.maximum(np.stack([score.power_term, -score.lift_deficit], axis=-1), self.problem.reward_floor)
         return reward, mask.copy(), np.zeros(self.num_envs, dtype=bool), self._info(score, strokes, clipped)
 
+    def differentiable_reward(self, actions: Any) -> Any:
+        """What every row would be paid if it beat so now, with its gradient; nothing is stepped, no floor applied.
+
+        Args:
+            actions: tensor of shape (num_envs, n), finite; clipped to [-1, 1], beyond which there is no gradient.
+
+        Returns:
+            Rewards, a tensor of shape (num_envs,).
+
+        Raises:
+            gymnasium.error.ResetNeeded: before the first reset, and where a row has ended.
+        """
+        self._require_running()
+        strokes, _ = self.coordinates.decode(actions, self._own(self._insect))
+        return -self.objective.cost(self._insect, strokes)[-1]
+
     def start_one(self, generator: np.random.Generator) -> tuple[np.ndarray, Info]:
         """`start` for a batch of one without options, whose insect a generator draws."""
         self.np_random = generator

@@ -140,7 +140,10 @@ def chosen_rows(chosen: Any, names: Sequence[str], rows: int) -> np.ndarray:
     if len(wanted) != rows:
         raise ValueError(f"reset option insect has {len(wanted)} names; allowed: one, or one for each row")
     number = {name: i for i, name in enumerate(names)}
-    return np.array([number[require_name("reset option insect", name, number)] for name in wanted], dtype=np.intp)
+    for name in wanted:
+        if not isinstance(name, str) or name not in number:
+            require_name("reset option insect", name, number)
+    return np.array([number[name] for name in wanted], dtype=np.intp)
 
 
 def prepared_insects(options: dict[str, Any], names: Sequence[str], rows: int) -> dict[str, Any]:

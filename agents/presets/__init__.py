@@ -1,0 +1,57 @@
+"""Recipes by name: `PRESETS`, one file a learner; recipes for rl-zoo3 lie beside them."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from agents.presets import gradient, ppo
+from agents.presets.gradient import GradientSettings
+from agents.presets.ppo import PPOSettings
+from agents.presets.preset import Preset, Settings, setting_of
+from flapenv.aero.checks import allowed, require_name
+
+__all__ = [
+    "ALGORITHMS",
+    "DEFAULT_PRESET",
+    "PRESETS",
+    "GradientSettings",
+    "PPOSettings",
+    "Preset",
+    "Settings",
+    "as_preset",
+    "setting_of",
+]
+
+PRESETS: dict[str, Preset] = {**ppo.PRESETS, **gradient.PRESETS}
+"""Every recipe by name, the default one first."""
+DEFAULT_PRESET = next(iter(PRESETS))
+ALGORITHMS: dict[str, Any] = {kind.algorithm: kind for kind in (PPOSettings, GradientSettings)}
+"""The settings' record of every learner by its name."""
+DESCRIBED = ("task", "algorithm", "settings")
+
+
+def as_preset(preset: Any) -> Preset:
+    """A preset by its name, itself, or the dict of one as config.json keeps it.
+
+    Raises:
+        ValueError: for an unknown name or a value that is not allowed.
+        TypeError: for an unknown key or another kind of thing.
+    """
+    if isinstance(preset, Preset):
+        return preset
+    if isinstance(preset, str):
+        return PRESETS[require_name("preset", preset, PRESETS)]
+    if not isinstance(preset, Mapping):
+        raise TypeError(f"preset = {preset!r} is not allowed; allowed: a name, a Preset or the dict of one")
+    for name in preset:
+        if name not in DESCRIBED:
+            raise TypeError(f"a preset has no key {name!r}; {allowed(name, DESCRIBED)}")
+    for name in DESCRIBED:
+        if name not in preset:
+            raise TypeError(f"a preset needs the key {name!r}; its keys are {', '.join(DESCRIBED)}")
+    task, settings = preset["task"], preset["settings"]
+    for name, value in (("task", task), ("settings", settings)):
+        if not isinstance(value, Mapping):
+            raise TypeError(f"{name} = {value!r} is not allowed; allowed: an object with the {name}'s keys")
+    kind = ALGORITHMS[require_name("algorithm", preset["algorithm"], ALGORITHMS)]
+    arguments = {name: value for name, value in task.items() if name != "name"}
+    return Preset(task=task.get("name", ""), arguments=arguments, settings=kind(**settings))

@@ -1,0 +1,122 @@
+"""Proximal policy optimisation: settings, and the presets that use them."""
+
+from typing import TYPE_CHECKING, ClassVar
+
+from agents.presets.preset import Preset
+from flapenv.aero.checks import record, require_count, require_scalar
+
+if TYPE_CHECKING:
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.callbacks import BaseCallback
+    from stable_baselines3.common.vec_env import VecEnv
+
+
+@record
+class PPOSettings:
+    """Proximal policy optimisation; where an episode is one wingbeat, `gamma` and `gae_lambda` have nothing to act on.
+
+    Attributes:
+        wingbeats: training budget, one wingbeat a row.
+        rows: of the batch that is flown at once.
+        steps: wingbeats of every row between two updates.
+        minibatch: rows of a gradient step.
+        epochs: passes over the rows, cut short where the policy has moved by `target_kl`.
+        learning_rate: at the start; falls towards zero with `learning_rate_power` of the budget that is left.
+        learning_rate_power: 1 is linear, more spends longer on small steps.
+        clip_range: of the probability ratio.
+        target_kl: the update stops at 1.5 times this divergence. It keeps early leaps from landing where the
+            frequency is clipped and the reward is flat.
+        width: neurons of each of the two hidden layers of actor and critic.
+        log_std: log standard deviation of the actions at the start, in units of the cube.
+        noise_floor: log standard deviation that the noise cannot fall below, at the start.
+        last_noise_floor: the same at the end; it falls linearly in between.
+        floor_until: fraction of the budget at which the last floor is reached.
+        gamma: discount factor.
+        gae_lambda: of the generalised advantage.
+        reward_scale: rewards are multiplied by it before anything is learned from them.
+        first_mean: action that the policy's mean begins at, in the box; None for its middle.
+        threads: of torch; networks this small are fastest on one.
+    """
+
+    algorithm: ClassVar[str] = "PPO"
+
+    wingbeats: int = 4_000_000
+    rows: int = 2_048
+    steps: int = 1
+    minibatch: int = 512
+    epochs: int = 8
+    learning_rate: float = 3e-3
+    learning_rate_power: float = 3.0
+    clip_range: float = 0.2
+    target_kl: float = 0.2
+    width: int = 64
+    log_std: float = -0.5
+    noise_floor: float = -4.0
+    last_noise_floor: float = -6.5
+    floor_until: float = 0.8
+    gamma: float = 1.0
+    gae_lambda: float = 1.0
+    reward_scale: float = 1.0
+    first_mean: tuple[float, ...] | None = None
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        """Check every field."""
+        for name in ("wingbeats", "rows", "steps", "minibatch", "epochs", "width", "threads"):
+            require_count(name, getattr(self, name))
+        for name in ("learning_rate", "learning_rate_power", "clip_range", "target_kl", "reward_scale"):
+            require_scalar(name, getattr(self, name), 0.0, open_low=True)
+        for name in ("log_std", "noise_floor", "last_noise_floor"):
+            require_scalar(name, getattr(self, name), -20.0, 0.0)
+        require_scalar("floor_until", self.floor_until, 0.0, 1.0, open_low=True)
+        for name in ("gamma", "gae_lambda"):
+            require_scalar(name, getattr(self, name), 0.0, 1.0)
+        if self.first_mean is not None:
+            for number, value in enumerate(self.first_mean):
+                require_scalar(f"first_mean[{number}]", value, -1.0, 1.0)
+            object.__setattr__(self, "first_mean", tuple(float(value) for value in self.first_mean))
+
+    def learning_rate_at(self, left: float) -> float:
+        """Learning rate of the update after which the fraction `left` of the budget is still to go."""
+        before = min(1.0, max(left, 0.0) + self.rows * self.steps / self.wingbeats)  # even the last update learns a little
+        return float(self.learning_rate * before**self.learning_rate_power)
+
+    def noise_floor_at(self, left: float) -> float:
+        """Floor of the log standard deviation with the fraction `left` of the budget still to go."""
+        done = min(1.0, (1 - left) / self.floor_until)
+        return self.noise_floor + (self.last_noise_floor - self.noise_floor) * done
+
+    def build(self, env: "VecEnv", seed: int) -> "PPO":
+        """The learner with random weights."""
+        from stable_baselines3 import PPO
+
+        from agents.policy import HoverPolicy
+
+        return PPO(
+            HoverPolicy,
+            env,
+            learning_rate=self.learning_rate_at,
+            n_steps=self.steps,
+            batch_size=min(self.minibatch, self.rows * self.steps),
+            n_epochs=self.epochs,
+            gamma=self.gamma,
+            gae_lambda=self.gae_lambda,
+            clip_range=self.clip_range,
+            target_kl=self.target_kl,
+            policy_kwargs={
+                "net_arch": [self.width, self.width],
+                "log_std_init": self.log_std,
+                "first_mean": self.first_mean,
+            },
+            seed=seed,
+            device="cpu",
+        )
+
+    def callbacks(self) -> "list[BaseCallback]":
+        """The noise floor falls."""
+        from agents.callbacks import NoiseFloor
+
+        return [NoiseFloor(self)]
+
+
+PRESETS = {"hover-ppo": Preset(task="hover", settings=PPOSettings())}

@@ -1,0 +1,86 @@
+"""Hover-v0 with named insects, or a user's own: one policy for all of them, beside optimum, bound and CFD."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from agents.comparison import Comparison, comparison_table, mean_gap, worst_gap
+from agents.tasks.task import Predictor, Verdict
+from flapenv.aero.checks import record
+from flapenv.envs import HoverVectorEnv
+from flapenv.insects import INSECTS, as_insect
+from flapenv.problem import as_problem
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@record
+class HoverTask:
+    """Hover with the least power, a few insects by name.
+
+    Attributes:
+        insects: names or `Insect`s, or dicts of them.
+        problem: by name, as a `HoverProblem` or as the dict of one.
+    """
+
+    insects: Sequence[Any] = INSECTS
+    problem: Any = "free-frequency"
+
+    environment = "flapenv/Hover-v0"
+    distance = "gap to the optimum"
+
+    def __post_init__(self) -> None:
+        """Resolve insects and problem, which may be dicts as from config.json."""
+        if isinstance(self.insects, str) or not isinstance(self.insects, Sequence) or not self.insects:
+            raise TypeError(f"insects = {self.insects!r} are not allowed; allowed: a list of names or insects")
+        object.__setattr__(self, "insects", tuple(as_insect(insect) for insect in self.insects))
+        object.__setattr__(self, "problem", as_problem(self.problem))
+
+    def vector_env(self, rows: int) -> HoverVectorEnv:
+        """The environment to train in."""
+        return HoverVectorEnv(
+            rows, insect=list(self.insects), problem=self.problem, autoreset_mode="SAME_STEP", infos="none"
+        )
+
+    @cached_property
+    def comparison(self) -> Comparison:
+        """What evaluates every insect without noise in double precision."""
+        return Comparison(self.insects, self.problem)
+
+    def glance(self, policy: Predictor) -> tuple[float, float]:
+        """Mean and largest gap of the feasible insects; NaN where there is none."""
+        gaps = self.comparison.gaps(policy)
+        return (float(np.mean(gaps)), float(np.max(gaps))) if len(gaps) else (float("nan"), float("nan"))
+
+    def judge(self, policy: Predictor) -> Verdict:
+        """Every insect's learned stroke beside its references."""
+        results = self.comparison.results(policy)
+        mean, worst = mean_gap(results), worst_gap(results)
+        return Verdict(
+            mean=mean,
+            worst=worst,
+            text=comparison_table(results),
+            results={
+                "problem": self.problem.to_dict(),
+                "insects": {one.insect.name: one.to_dict() for one in results},
+                "mean_gap_percent": None if mean is None else 100 * mean,
+                "infeasible": [one.insect.name for one in results if not one.best.feasible],
+            },
+        )
+
+    def draw(self, policy: Predictor) -> "Figure":
+        """The learned over the optimal strokes."""
+        from agents.tasks.hover_picture import draw_strokes
+
+        return draw_strokes(self.comparison.results(policy))
+
+    def to_dict(self) -> dict[str, Any]:
+        """As config.json keeps it.
+
+        Raises:
+            TypeError: for an insect that no file can hold.
+        """
+        return {"insects": [insect.to_dict() for insect in self.insects], "problem": self.problem.to_dict()}
