@@ -10,16 +10,17 @@ from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.type_aliases import Schedule
 from torch import nn
 
-MEAN_REACH = 1.1
-"""The mean runs over ±1.1, a little past the box, so that its faces are reached at a finite weight."""
+from agents.actor import MEAN_REACH
+
 LEAST_FLOOR = -20.0
 """A floor of the log standard deviation that binds nothing."""
 
 
-class _Reach(nn.Module):
+class Reach(nn.Module):
     """x -> 1.1 tanh x."""
 
     def forward(self, latent: torch.Tensor) -> torch.Tensor:
+        """The mean of the actions, a little past the box at most."""
         return MEAN_REACH * torch.tanh(latent)
 
 
@@ -48,7 +49,7 @@ class HoverPolicy(ActorCriticPolicy):
         self.noise_net = nn.Linear(self.mlp_extractor.latent_dim_pi, self.log_std.shape[0])
         nn.init.zeros_(self.noise_net.weight)
         nn.init.constant_(self.noise_net.bias, self.log_std_init)
-        self.action_net = nn.Sequential(self.action_net, _Reach())
+        self.action_net = nn.Sequential(self.action_net, Reach())
         trained = [parameter for parameter in self.parameters() if parameter.requires_grad]
         make_optimizer: Callable[..., torch.optim.Optimizer] = self.optimizer_class
         self.optimizer = make_optimizer(trained, lr=lr_schedule(1), **self.optimizer_kwargs)
