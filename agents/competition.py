@@ -18,7 +18,8 @@ from tqdm import tqdm
 from agents.budget import Budget, Trace
 from agents.comparison import Comparison
 from agents.competitors import COMPETITORS, load_libraries, run
-from agents.run_folder import CONFIG, POLICY, RESULTS, versions, write_json
+from agents.policy_file import load_policy
+from agents.run_folder import RESULTS, versions, write_json
 from flapenv.aero.checks import record, require_count, require_name
 from flapenv.insects import INSECTS, Insect, as_insect, pick
 from flapenv.optimum import optimum
@@ -28,6 +29,7 @@ from flapenv.wing_pool import wing_pool
 
 CHECKPOINTS = (10, 100, 1_000, 10_000, 100_000, 1_000_000)
 """Wingbeats at which gaps are read off."""
+HOVER = "flapenv/Hover-v0"
 SOLVED = 0.001
 """A gap [-] that counts as solved, for the wingbeats and seconds it takes."""
 
@@ -154,16 +156,15 @@ def compete(config: CompetitionConfig, *, progress: bool = True) -> CompetitionR
 
 
 def _policy_score(folder: Path, insects: tuple[Insect, ...], problem: HoverProblem) -> PolicyScore:
-    """A run folder's policy on the insects; the file is a pickle, opened only because it was asked for."""
-    from stable_baselines3 import PPO
-
-    if not (folder / POLICY).is_file():
-        raise FileNotFoundError(f"policy {folder} holds no {POLICY}; allowed: the folder of a training run")
-    trained = json.loads((folder / CONFIG).read_text(encoding="utf-8"))
-    if as_problem(trained["problem"]) != problem:
-        raise ValueError(f"policy {folder} was trained for {trained['problem']['name']}; allowed: {problem.name}")
+    """A run folder's policy on the insects."""
+    actor, card = load_policy(folder)
+    if card.environment != HOVER:
+        raise ValueError(f"policy {folder} flies {card.environment}; allowed: policies of {HOVER}")
+    trained = as_problem(card.task["problem"])
+    if trained.box != problem.box or trained.model != problem.model:
+        raise ValueError(f"policy {folder} was trained for {trained.name}; allowed: {problem.name}")
     results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
-    gaps = Comparison(insects, problem).gaps(PPO.load(folder / POLICY, device="cpu"))
+    gaps = Comparison(insects, problem).gaps(actor)
     return PolicyScore(
         name=folder.name, wingbeats=int(results["wingbeats"]), seconds=float(results["seconds"]), gaps=gaps
     )

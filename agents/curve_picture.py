@@ -48,5 +48,3 @@ def draw_learning_curve(out: Path, distance: str, title: str) -> "Figure":
     axes.legend(frameon=False)
     axes.grid(alpha=0.25)
     return figure
-
-

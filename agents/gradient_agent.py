@@ -93,7 +93,8 @@ class GradientAgent(BaseAlgorithm):
             callback.on_rollout_start()
             self._update_current_progress_remaining(self.num_timesteps, total_timesteps)
             actions = self._climb(self.env)
-            self._last_obs, rewards, _, _ = self.env.step(actions)
+            observations, rewards, _, _ = self.env.step(actions)
+            self._last_obs = np.asarray(observations)
             self.num_timesteps += GRADIENT_COST * self.env.num_envs
             callback.update_locals({"rewards": rewards})
             if not callback.on_step():
@@ -109,8 +110,7 @@ class GradientAgent(BaseAlgorithm):
         """One step of Adam on the rows as they are; the actions that were evaluated."""
         optimizer = self.policy.optimizer
         self._update_learning_rate(optimizer)
-        observations, _ = self.policy.obs_to_tensor(self._last_obs)  # type of the batch, on the policy's device
-        mean = self.policy.get_distribution(observations).distribution.mean
+        mean = self.policy.mean_action(torch.as_tensor(self._last_obs, device=self.device))
         reward = env.env_method("differentiable_reward", mean, indices=0)[0]
         loss = -reward.mean()
         optimizer.zero_grad()

@@ -54,6 +54,11 @@ class HoverPolicy(ActorCriticPolicy):
         make_optimizer: Callable[..., torch.optim.Optimizer] = self.optimizer_class
         self.optimizer = make_optimizer(trained, lr=lr_schedule(1), **self.optimizer_kwargs)
 
+    def mean_action(self, observations: torch.Tensor) -> torch.Tensor:
+        """The mean of the policy, shape (rows, n), not clipped to the box; keeps its gradient."""
+        mean: torch.Tensor = self.action_net(self.mlp_extractor.forward_actor(torch.flatten(observations, 1)))
+        return mean
+
     def _get_action_dist_from_latent(self, latent_pi: torch.Tensor) -> Distribution:
         assert isinstance(self.action_dist, DiagGaussianDistribution)
         noise = torch.clamp(self.noise_net(latent_pi), self.noise_floor, 0.0)

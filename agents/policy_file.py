@@ -13,11 +13,9 @@ from safetensors.numpy import save as tensors_as_bytes
 
 from agents.actor import Actor
 from agents.policy_card import PolicyCard
-from agents.run_folder import write_atomically, write_json
+from agents.run_folder import POLICY_TENSORS, write_atomically, write_json
 from flapenv.aero.checks import allowed
 
-POLICY_TENSORS, POLICY_CARD = "policy.safetensors", "policy.json"
-"""A run folder's policy."""
 SHIPPED = Path(__file__).parent / "policies"
 """Where the repository's own policies lie."""
 LARGEST = 2**26

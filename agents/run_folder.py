@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 CONFIG, RESULTS, POLICY, CURVE = "config.json", "results.json", "policy.zip", "curve.csv"
-ACTOR, CARD = "policy.safetensors", "policy.json"
+POLICY_TENSORS, POLICY_CARD = "policy.safetensors", "policy.json"
 CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD = "learning_curve.png", "learned.png", "tensorboard"
-FILES = (CONFIG, RESULTS, POLICY, ACTOR, CARD, CURVE, CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD)
+FILES = (CONFIG, RESULTS, POLICY, POLICY_TENSORS, POLICY_CARD, CURVE, CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD)
 RUNS = Path("runs")
 PACKAGES = ("flapenv", "gymnasium", "numpy", "scipy", "sb3-contrib", "stable-baselines3", "torch")
 

@@ -10,16 +10,18 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.callbacks import CallbackList
 from stable_baselines3.common.logger import configure
 
+from agents.actor_of import actor_of
 from agents.callbacks import Checkpoints, LearningCurve, ProgressBar
 from agents.curve_picture import draw_learning_curve
-from agents.policy_file import PolicyCard, actor_of, save_policy
+from agents.policy_card import PolicyCard
+from agents.policy_file import save_policy
 from agents.presets import DEFAULT_PRESET, Preset, as_preset
 from agents.run_folder import (
     CONFIG,
     CURVE_PICTURE,
-    POLICY,
-    RESULTS,
+    POLICY_TENSORS,
     RESULT_PICTURE,
+    RESULTS,
     TENSORBOARD,
     open_run_folder,
     versions,
@@ -41,11 +43,13 @@ class TrainingConfig:
         preset: a name of `agents.presets.PRESETS`, a `Preset`, or the dict of one.
         seed: of networks, noise and draws.
         name: what the run is called; the preset's where it is given by name.
+        command: what was typed, for the policy's card.
     """
 
     preset: Any = DEFAULT_PRESET
     seed: int = 0
     name: str = ""
+    command: str = ""
 
     def __post_init__(self) -> None:
         """Resolve the preset; check the seed."""
@@ -54,6 +58,8 @@ class TrainingConfig:
         preset = as_preset(self.preset)
         own = self.preset if isinstance(self.preset, str) else f"{preset.task}-{preset.settings.algorithm.lower()}"
         object.__setattr__(self, "name", self.name or own)
+        if not self.command:
+            object.__setattr__(self, "command", f"python train.py --preset {self.name} --seed {self.seed}")
         object.__setattr__(self, "preset", preset)
 
     def to_dict(self) -> dict[str, Any]:
@@ -73,7 +79,7 @@ class TrainingResult:
         out: its folder.
         verdict: on the last policy.
         wingbeats: wingbeats trained on.
-        seconds: spent training.
+        seconds: spent training, without those spent watching it.
         interrupted: whether it was stopped before its budget was spent.
     """
 
@@ -137,7 +143,7 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         out=out,
         verdict=task.judge(model),
         wingbeats=model.num_timesteps,
-        seconds=seconds,
+        seconds=seconds - curve.watching,
         interrupted=interrupted,
     )
     save_results(config, result, model)
@@ -146,10 +152,23 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
 
 
 def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgorithm) -> None:
-    """Write results.json, and the policy's network with its card."""
-    verdict = result.verdict
-    described = config.to_dict()
+    """Write results.json, and the policy's network as safetensors with its card."""
+    verdict, described = result.verdict, config.to_dict()
     scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": config.preset.make_task().distance}
+    actor = actor_of(model)
+    card = PolicyCard.of(
+        actor,
+        environment=described["environment"],
+        task=described["task"],
+        algorithm=described["algorithm"],
+        preset=config.name,
+        command=config.command,
+        seed=config.seed,
+        wingbeats=result.wingbeats,
+        result=scores,
+        versions=versions(),
+    )
+    save_policy(actor, card, result.out / POLICY_TENSORS)
     write_json(
         result.out / RESULTS,
         {

@@ -78,7 +78,9 @@ class PPOSettings:
 
     def learning_rate_at(self, left: float) -> float:
         """Learning rate of the update after which the fraction `left` of the budget is still to go."""
-        before = min(1.0, max(left, 0.0) + self.rows * self.steps / self.wingbeats)  # even the last update learns a little
+        before = min(
+            1.0, max(left, 0.0) + self.rows * self.steps / self.wingbeats
+        )  # even the last update learns a little
         return float(self.learning_rate * before**self.learning_rate_power)
 
     def noise_floor_at(self, left: float) -> float:
@@ -106,6 +108,7 @@ class PPOSettings:
             policy_kwargs={
                 "net_arch": [self.width, self.width],
                 "log_std_init": self.log_std,
+                "first_mean": self.first_mean,
                 "first_mean": self.first_mean,
             },
             seed=seed,

@@ -3,7 +3,7 @@
 import inspect
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, fields, replace
+from dataclasses import asdict, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from agents.tasks import TASKS, make_task
@@ -49,7 +49,7 @@ class Preset:
 
     task: str
     settings: Any
-    arguments: Mapping[str, Any] = {}
+    arguments: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check the task's name and those of its arguments."""
@@ -75,7 +75,7 @@ class Preset:
             TypeError: for names that do not exist, or values of another kind.
             ValueError: for values that are not allowed.
         """
-        known = [field.name for field in fields(self.settings)]
+        known = [one.name for one in fields(self.settings)]
         for name, value in settings.items():
             if name not in known:
                 kind = self.settings.algorithm

@@ -3,9 +3,10 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from agents.predictor import Predictor
 from agents.tasks.hover import HoverTask
 from agents.tasks.random_wings import RandomWingsTask
-from agents.tasks.task import Predictor, Task, Verdict
+from agents.tasks.task import Task, Verdict
 
 __all__ = ["TASKS", "Predictor", "Task", "Verdict", "make_task"]
 

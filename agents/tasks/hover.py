@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.comparison import Comparison, comparison_table, mean_gap, worst_gap
-from agents.tasks.task import Predictor, Verdict
+from agents.predictor import Predictor
+from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
 from flapenv.insects import INSECTS, as_insect

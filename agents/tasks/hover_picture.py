@@ -39,5 +39,3 @@ def draw_strokes(results: Sequence[InsectResult]) -> "Figure":
         axes.set_ylabel("angle [°]")
     figure.suptitle("flapping φ (blue) and pitching θ (orange): learned thin, optimal broad", fontsize=11)
     return figure
-
-

@@ -118,7 +118,7 @@ def wings_table(flown: dict[str, WingFlights]) -> str:
     """Gaps, weight support and frequency errors, one line a split."""
     header = ("random wings", "number", "mean gap", "median", "95 %", "worst", "rms error of f", "least weight")
     units = ("", "", "%", "%", "%", "%", "%", "support")
-    rows = [header, units]
+    rows: list[tuple[str, ...]] = [header, units]
     for split, flights in flown.items():
         row = flights.to_dict()
         gaps = (row[f"{name}_gap_percent"] for name in ("mean", "median", "p95", "worst"))

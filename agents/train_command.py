@@ -1,0 +1,167 @@
+"""`python train.py`: train one policy by a preset."""
+
+import argparse
+import json
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+from flapenv.aero.checks import allowed
+
+CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "versions")
+"""Of a config.json; `environment` and `versions` are told, not asked for."""
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    from agents.presets import ALGORITHMS, DEFAULT_PRESET, PRESETS
+    from flapenv import INSECTS, PROBLEMS
+
+    budget = PRESETS[DEFAULT_PRESET].settings.wingbeats
+    made = argparse.ArgumentParser(
+        prog="train.py",
+        description=(
+            "Train a policy that hovers with the least power, and compare it with the proven optimum and CFD.\n\n"
+            "With no argument: one policy for all eight insects, from random weights, on the CPU, in a few minutes."
+        ),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples:\n"
+            "  python train.py                              all eight insects, seed 0, into runs/hover-ppo-seed0/\n"
+            "  python train.py --seed 1 --out runs/second   another seed, a folder of your own\n"
+            "  python train.py --insects hawkmoth fruitfly --wingbeats 500000\n"
+            "  python train.py --preset random-wings-ppo    one policy for every wing; see --list\n"
+            "  python train.py --set rows=4096 --set learning_rate=0.001\n\n"
+            "other commands, each with its own --help:\n"
+            "  python train.py evaluate hover               a policy under noise and in other models\n"
+            "  python train.py benchmark                    every learner and every task, five seeds each\n"
+            "  python train.py compare                      optimisers on the same strokes, with equal budgets\n\n"
+            "a run folder holds config.json, results.json, the policy (policy.safetensors with its card policy.json,\n"
+            "and Stable-Baselines3's policy.zip), curve.csv, TensorBoard logs and two pictures; Ctrl-C stops early,\n"
+            "keeps what was learned and prints the comparison for it"
+        ),
+    )
+    made.add_argument(
+        "--preset", metavar="NAME", help=f"recipe: task and learner, see --list (default {DEFAULT_PRESET})"
+    )
+    made.add_argument(
+        "--algorithm", metavar="NAME", help=f"the hover preset of {', '.join(ALGORITHMS)}; in place of --preset"
+    )
+    made.add_argument("--list", action="store_true", help="list all presets and end")
+    made.add_argument("--config", type=Path, metavar="FILE", help="a run's config.json; in place of --preset")
+    made.add_argument("--seed", type=int, metavar="N", help="of networks, noise and draws (default 0)")
+    made.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder of the run, new or empty (default runs/PRESET-seedN/)"
+    )
+    made.add_argument(
+        "--insects", nargs="+", metavar="NAME", help=f"of {', '.join(INSECTS)} (default all); of tasks that name them"
+    )
+    made.add_argument(
+        "--problem", metavar="NAME", help=f"of {', '.join(PROBLEMS)} (default the first); of tasks that have one"
+    )
+    made.add_argument(
+        "--wingbeats", type=int, metavar="N", help=f"training budget (default the preset's; {budget:,} for the default)"
+    )
+    made.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        dest="settings",
+        help="of the learner; repeatable",
+    )
+    made.add_argument("--quiet", action="store_true", help="no progress bar")
+    return made
+
+
+def train_command(arguments: list[str]) -> int:
+    """Train as the command line says; 0 on success, 2 for bad input, 130 after Ctrl-C."""
+    options = parser().parse_args(arguments)
+    if options.list:
+        print(presets_table())
+        return 0
+    try:
+        config = config_of(options, shlex.join(["python", "train.py", *arguments]))
+        from agents.training import summary, train
+
+        result = train(config, options.out, progress=not options.quiet)
+    except ImportError as missing:
+        print(f"train.py: {missing}; install the learners: pip install -e '.[train]'", file=sys.stderr)
+        return 2
+    except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
+        print(f"train.py: {mistake}", file=sys.stderr)
+        return 2
+    print(summary(result), flush=True)
+    return 130 if result.interrupted else 0
+
+
+def config_of(options: argparse.Namespace, command: str) -> Any:
+    """What the command line asks for, a `TrainingConfig`.
+
+    Raises:
+        ValueError: for unknown names or values that are not allowed.
+        TypeError: for unknown keys or values of another kind.
+        OSError: for a file that cannot be read.
+    """
+    from agents.presets import ALGORITHMS, DEFAULT_PRESET, as_preset, setting_of
+    from agents.training import TrainingConfig
+    from flapenv.aero.checks import require_name
+
+    given = [name for name in ("preset", "algorithm", "config") if getattr(options, name) is not None]
+    if len(given) > 1:
+        raise ValueError(f"--{given[0]} and --{given[1]} ask for two recipes; allowed: one of them")
+    name, seed = options.preset or DEFAULT_PRESET, 0
+    if options.algorithm is not None:
+        known = {algorithm.lower(): algorithm for algorithm in ALGORITHMS}
+        name = f"hover-{require_name('--algorithm', options.algorithm.lower(), known)}"
+    chosen: Any = name
+    if options.config is not None:
+        name, seed, chosen = read_config(options.config)
+    preset = as_preset(chosen)
+    own = {"insects": options.insects, "problem": options.problem}
+    task = {key: value for key, value in own.items() if value is not None}
+    settings = dict(setting_of(text) for text in options.settings)
+    if options.wingbeats is not None:
+        settings["wingbeats"] = options.wingbeats
+    seed = seed if options.seed is None else options.seed
+    return TrainingConfig(preset=preset.changed(task, settings), name=name, seed=seed, command=command)
+
+
+def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
+    """Name, seed and preset of a config.json.
+
+    Raises:
+        ValueError: for what is not JSON, or lacks a key.
+        TypeError: for an unknown key.
+        OSError: if the file cannot be read.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except UnicodeDecodeError as mistake:
+        raise ValueError(f"--config {path} is not text: {mistake}") from None
+    except json.JSONDecodeError as mistake:
+        raise ValueError(f"--config {path} is not JSON: {mistake}") from None
+    if not isinstance(content, dict):
+        raise TypeError(f"--config {path} holds no object; allowed: a config.json as a run writes it")
+    for key in content:
+        if key not in CONFIG_KEYS:
+            raise TypeError(f"--config {path} has an unknown key {key!r}; {allowed(key, CONFIG_KEYS)}")
+    needed = ("task", "algorithm", "settings")
+    missing = [key for key in needed if key not in content]
+    if missing:
+        raise ValueError(f"--config {path} lacks {', '.join(missing)}; allowed: a config.json as a run writes it")
+    return str(content.get("preset", "")), content.get("seed", 0), {key: content[key] for key in needed}
+
+
+def presets_table() -> str:
+    """Every preset with its task, learner and budget."""
+    from agents.presets import PRESETS
+    from flapenv.tables import text_table
+
+    rows: list[tuple[str, ...]] = [("preset", "environment", "judged by", "learner", "wingbeats")]
+    for name, preset in PRESETS.items():
+        task = preset.make_task()
+        learner = preset.settings
+        rows.append((name, task.environment, task.distance, learner.algorithm, f"{learner.wingbeats:,}"))
+    return text_table(rows)
