@@ -67,13 +67,21 @@ class Comparison:
     lost: int
 
 
-def fly(policy: Policy, *, episodes: int = EPISODES, seed: int = 0, **arguments: Any) -> Flights:
+def fly(
+    policy: Policy,
+    *,
+    episodes: int = EPISODES,
+    seed: int = 0,
+    options: dict[str, Any] | None = None,
+    **arguments: Any,
+) -> Flights:
     """Fly a policy through whole episodes; those of one seed have the same insects, starts and gusts for every policy.
 
     Args:
         policy: observations to actions, noise-free; NumPy arrays.
         episodes: rows of the batch, one episode each.
         seed: of the batch.
+        options: of its reset, such as the insect of each row.
         **arguments: of `HeaveVectorEnv`, such as insect.
 
     Raises:
@@ -83,7 +91,7 @@ def fly(policy: Policy, *, episodes: int = EPISODES, seed: int = 0, **arguments:
     if "infos" in arguments:
         raise TypeError(f"infos = {arguments['infos']!r} is not an argument here; allowed: leave it out")
     env = HeaveVectorEnv(episodes, infos=["power_excess", "height_ratio", "reward/end"], **arguments)
-    observations, _ = env.reset(seed=seed)
+    observations, _ = env.reset(seed=seed, options=options)
     start = getattr(policy, "start", None)
     if start is not None:
         start()

@@ -7,14 +7,14 @@ and keeps it in a table and a picture. `agents.heave_flights` compares any other
 import argparse
 import csv
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from agents.heave_flights import EPISODES, Flights, fly, interval_of_mean
-from agents.lqg_controller import lqg, proportional_derivative
+from agents.lqg_controller import Lqg, lqg, proportional_derivative
 from agents.run_folder import open_run_folder, write_atomically
 from flapenv.aero.checks import record, require_count
 from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
@@ -23,6 +23,7 @@ from flapenv.insects import INSECTS, Insect, as_insect
 from flapenv.tables import text_table
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 RATIOS = tuple(float(ratio) for ratio in np.logspace(3, -1.5, 12))
@@ -55,7 +56,7 @@ def fly_front(
     seed: int = 0,
     gusts: GustModel | None = None,
 ) -> Front:
-    """Design and fly a controller for every ratio.
+    """Design and fly a controller of each kind for every ratio.
 
     Args:
         insect: scalar fields, or a name.
@@ -65,14 +66,37 @@ def fly_front(
         gusts: flown through, and expected by the filter; the environment's own where None.
     """
     insect = as_insect(insect)
-    flown = [
-        tuple(
-            fly(make(insect, ratio, gusts), episodes=episodes, seed=seed, insect=insect, gusts=gusts)
-            for ratio in ratios
-        )
-        for make in (lqg, proportional_derivative)
-    ]
-    return Front(insect=insect.name, ratios=tuple(ratios), lqg=flown[0], pd=flown[1])
+    common: dict[str, Any] = {"ratios": ratios, "episodes": episodes, "seed": seed, "gusts": gusts}
+    return Front(
+        insect=insect.name,
+        ratios=tuple(ratios),
+        lqg=fly_every(lqg, insect, **common),
+        pd=fly_every(proportional_derivative, insect, **common),
+    )
+
+
+def fly_every(
+    make: Callable[[Insect, float, GustModel | None], Lqg],
+    insect: Insect,
+    *,
+    ratios: Sequence[float] = RATIOS,
+    episodes: int = EPISODES,
+    seed: int = 0,
+    gusts: GustModel | None = None,
+) -> tuple[Flights, ...]:
+    """Controllers of one kind through the same gusts.
+
+    Args:
+        make: `lqg` or `proportional_derivative`.
+        insect: scalar fields.
+        ratios: as `fly_front`'s, like the rest.
+        episodes: of each.
+        seed: of the episodes.
+        gusts: flown through, and expected.
+    """
+    return tuple(
+        fly(make(insect, ratio, gusts), episodes=episodes, seed=seed, insect=insect, gusts=gusts) for ratio in ratios
+    )
 
 
 HEADER = (
@@ -110,10 +134,16 @@ def draw_front(front: Front) -> "Figure":
     """Power over rms height, both controllers, with the paired intervals over the laziest LQG."""
     require_matplotlib()
     from matplotlib.figure import Figure
-    from matplotlib.ticker import LogLocator
 
     figure = Figure(figsize=(7.2, 4.4), dpi=110, layout="constrained")
-    axes = figure.add_subplot()
+    draw_front_on(figure.add_subplot(), front)
+    return figure
+
+
+def draw_front_on(axes: "Axes", front: Front) -> None:
+    """The same on axes that are there."""
+    from matplotlib.ticker import LogLocator
+
     base = front.lqg[0]
     for flights, colour, mark, label in (
         (front.lqg, BLUE, "o-", "LQG with gust estimate and integral"),
@@ -152,7 +182,6 @@ def draw_front(front: Front) -> "Figure":
     )
     axes.legend(frameon=False)
     axes.grid(alpha=0.25)
-    return figure
 
 
 def save_front(front: Front, folder: Path) -> None:
