@@ -77,6 +77,7 @@ def actor_of_modules(modules: Iterable[nn.Module]) -> Actor:
     for module in _flat(modules):
         affine = _affine(module)
         if affine is None:
+            _name(module, BETWEEN | LAST, "among the layers")
             functions.append(module)
         elif len(functions) < len(layers):  # nothing bends what lies between: two layers are one
             weight, bias = affine
