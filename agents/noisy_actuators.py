@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from agents.tasks.task import Predictor
+from agents.predictor import Predictor
 from flapenv.aero.checks import require_count, require_scalar
 
 NOISE_SHARE = 0.02

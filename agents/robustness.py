@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from agents.noisy_actuators import NOISE_SHARE, NoisyActuators
-from agents.tasks.task import Predictor
+from agents.predictor import Predictor
 from flapenv.aero.checks import record, require_count
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.envs import HoverVectorEnv

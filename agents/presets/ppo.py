@@ -109,7 +109,6 @@ class PPOSettings:
                 "net_arch": [self.width, self.width],
                 "log_std_init": self.log_std,
                 "first_mean": self.first_mean,
-                "first_mean": self.first_mean,
             },
             seed=seed,
             device="cpu",

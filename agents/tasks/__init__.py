@@ -4,13 +4,22 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from agents.predictor import Predictor
+from agents.tasks.adapt import HoverAdaptTask
+from agents.tasks.heave import HeaveTask
 from agents.tasks.hover import HoverTask
 from agents.tasks.random_wings import RandomWingsTask
 from agents.tasks.task import Task, Verdict
+from agents.tasks.waveform import WaveformTask
 
 __all__ = ["TASKS", "Predictor", "Task", "Verdict", "make_task"]
 
-TASKS: dict[str, Callable[..., Task]] = {"hover": HoverTask, "random-wings": RandomWingsTask}
+TASKS: dict[str, Callable[..., Task]] = {
+    "hover": HoverTask,
+    "random-wings": RandomWingsTask,
+    "adapt": HoverAdaptTask,
+    "waveform": WaveformTask,
+    "heave": HeaveTask,
+}
 """Every task by its name."""
 
 

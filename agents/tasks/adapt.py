@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from agents.predictor import Predictor
 from agents.tasks.held_out import HELD_OUT_SEED, mean_with_interval, noise_free
-from agents.tasks.task import Predictor, Verdict
+from agents.tasks.task import Verdict
 from flapenv.adapt.tuning import NAMES
 from flapenv.aero.checks import record
 from flapenv.envs.hover_adapt import HoverAdaptVectorEnv

@@ -9,8 +9,9 @@ import numpy as np
 from agents.heave_flights import EPISODES, Flights, Policy, compare_with_front, fly
 from agents.lqg import RATIOS, fly_every
 from agents.lqg_controller import Lqg, lqg
+from agents.predictor import Predictor
 from agents.tasks.held_out import HELD_OUT_SEED, mean_with_interval, noise_free
-from agents.tasks.task import Predictor, Verdict
+from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs.heave import HeaveVectorEnv
 from flapenv.envs.insect_choice import listed_insects

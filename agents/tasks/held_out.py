@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from agents.tasks.task import Predictor
+from agents.predictor import Predictor
 
 HELD_OUT_SEED = 2**32
 """Above every seed that a training run can have."""

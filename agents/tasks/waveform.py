@@ -5,8 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from agents.predictor import Predictor
 from agents.tasks.held_out import HELD_OUT_SEED, noise_free
-from agents.tasks.task import Predictor, Verdict
+from agents.tasks.task import Verdict
 from flapenv.aero.checks import record, require_count
 from flapenv.aero.spline_motion import SplineMotion
 from flapenv.envs.insect_choice import listed_insects
