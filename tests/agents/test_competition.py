@@ -17,10 +17,14 @@ from agents.competition import (
     median_to_solve,
     quartiles,
 )
-from agents.presets import PPOPreset
+from agents.presets import PPOSettings, Preset
 from agents.training import TrainingConfig, train
 
-TINY = PPOPreset(wingbeats=4096, rows=512, minibatch=128, epochs=1)
+TINY = Preset(
+    task="hover",
+    arguments={"insects": ["hawkmoth"]},
+    settings=PPOSettings(wingbeats=4096, rows=512, minibatch=128, epochs=1),
+)
 
 
 def test_quartiles_and_wingbeats_to_solve_are_read_off_the_traces() -> None:
@@ -37,7 +41,7 @@ def test_quartiles_and_wingbeats_to_solve_are_read_off_the_traces() -> None:
 def test_the_command_compares_a_policy_with_optimisers_and_keeps_everything(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    train(TrainingConfig(insects=["hawkmoth"], preset=TINY), tmp_path / "run", progress=False)
+    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False)
     arguments = ["compare", "--insects", "hawkmoth", "--seeds", "2", "--wingbeats", "300", "--quiet"]
     out = tmp_path / "out"
     assert command.main([*arguments, "--policy", str(tmp_path / "run"), "--out", str(out)]) == 0
@@ -76,7 +80,7 @@ def test_random_wings_and_who_cannot_hover_are_told_apart() -> None:
         (["--competitors", "SLSPQ"], "did you mean 'SLSQP'"),
         (["--problem", "free"], "problem = 'free' is unknown"),
         (["--insects", "fruitfly", "--problem", "fixed-frequency"], "none can hover in fixed-frequency"),
-        (["--policy", "nowhere"], "policy nowhere holds no policy.zip"),
+        (["--policy", "nowhere"], "policy = 'nowhere' is unknown"),
     ],
 )
 def test_bad_input_ends_with_one_line(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -87,7 +91,7 @@ def test_bad_input_ends_with_one_line(arguments: list[str], said: str, capsys: p
 
 
 def test_a_policy_of_another_problem_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    train(TrainingConfig(insects=["hawkmoth"], preset=TINY), tmp_path / "run", progress=False)
+    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False)
     arguments = ["compare", "--quiet", "--insects", "hawkmoth", "--problem", "profile-drag"]
     assert command.main([*arguments, "--policy", str(tmp_path / "run")]) == 2
     assert "was trained for free-frequency; allowed: profile-drag" in capsys.readouterr().err

@@ -2,11 +2,11 @@
 
 import pytest
 
-from agents.presets import PPOPreset
+from agents.presets import PPOSettings
 
 
 def test_the_learning_rate_falls_from_its_start_towards_zero() -> None:
-    preset = PPOPreset()
+    preset = PPOSettings()
     rates = [preset.learning_rate_at(left) for left in (1.0, 0.7, 0.3, 0.0)]
     assert rates[0] == preset.learning_rate
     assert rates == sorted(rates, reverse=True)
@@ -15,12 +15,12 @@ def test_the_learning_rate_falls_from_its_start_towards_zero() -> None:
 
 
 def test_a_budget_of_one_update_learns_at_the_full_rate() -> None:
-    preset = PPOPreset(wingbeats=512, rows=512)
+    preset = PPOSettings(wingbeats=512, rows=512)
     assert preset.learning_rate_at(0.0) == preset.learning_rate
 
 
 def test_the_noise_floor_falls_until_its_fraction_of_the_budget_and_stays() -> None:
-    preset = PPOPreset(noise_floor=-4.0, last_noise_floor=-6.0, floor_until=0.5)
+    preset = PPOSettings(noise_floor=-4.0, last_noise_floor=-6.0, floor_until=0.5)
     assert [preset.noise_floor_at(left) for left in (1.0, 0.75, 0.5, 0.0)] == [-4, -5, -6, -6]
 
 
@@ -38,4 +38,4 @@ def test_the_noise_floor_falls_until_its_fraction_of_the_budget_and_stays() -> N
 )
 def test_bad_settings_are_named(field: str, value: object, kind: type[Exception]) -> None:
     with pytest.raises(kind, match=field):
-        PPOPreset(**{field: value})
+        PPOSettings(**{field: value})
