@@ -57,17 +57,10 @@ class Actor:
                 f"{len(self.weights)} weights and {len(self.biases)} biases are not allowed; allowed: one of each a "
                 "layer, at least one layer"
             )
-        shapes: tuple[tuple[int | str, ...], ...]
-        inputs: int | str = "inputs"
+        inputs = np.shape(self.weights[0])[-1:]
         for number, (weight, bias) in enumerate(zip(self.weights, self.biases, strict=True)):
-            _require_floats(f"layers.{number}.weight", weight)
-            _require_floats(f"layers.{number}.bias", bias)
-            shapes = ("outputs", inputs), (len(weight) if weight.ndim else "outputs",)
-            if weight.ndim != 2 or 0 in weight.shape or inputs not in ("inputs", weight.shape[1]):
-                raise ValueError(f"layers.{number}.weight has shape {weight.shape}; allowed: {_text(shapes[0])}")
-            if bias.shape != shapes[1]:
-                raise ValueError(f"layers.{number}.bias has shape {bias.shape}; allowed: {_text(shapes[1])}")
-            inputs = len(weight)
+            _require_layer(f"layers.{number}", weight, bias, inputs)
+            inputs = bias.shape
         for field in ("weights", "biases"):
             object.__setattr__(self, field, tuple(_kept(array) for array in getattr(self, field)))
 
@@ -135,14 +128,19 @@ class Actor:
         return cls(weights=weights, biases=biases, activation=activation, squash=squash)
 
 
-def _require_floats(name: str, array: Any) -> None:
-    """Refuse what is not finite float32."""
-    if not isinstance(array, np.ndarray) or array.dtype != np.float32:
-        kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
-        raise TypeError(f"{name} is of type {kind}; allowed: an array of float32")
-    if not np.all(np.isfinite(array)):
+def _require_layer(name: str, weight: Any, bias: Any, inputs: tuple[int, ...]) -> None:
+    """Refuse what is not finite float32 of shapes (outputs, *inputs) and (outputs,)."""
+    for part, array in (("weight", weight), ("bias", bias)):
+        if not isinstance(array, np.ndarray) or array.dtype != np.float32:
+            kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
+            raise TypeError(f"{name}.{part} is of type {kind}; allowed: an array of float32")
         bad = array[~np.isfinite(array)]
-        raise ValueError(f"{name} holds {bad.size} numbers that are not finite, the first {bad[0]}; allowed: finite")
+        if bad.size:
+            raise ValueError(f"{name}.{part} holds {bad.size} numbers that are not finite, the first {bad[0]}")
+    if weight.ndim != 2 or weight.shape[1:] != inputs or not weight.size:
+        raise ValueError(f"{name}.weight has shape {weight.shape}; allowed: (outputs, {', '.join(map(str, inputs))})")
+    if bias.shape != weight.shape[:1]:
+        raise ValueError(f"{name}.bias has shape {bias.shape}; allowed: {weight.shape[:1]}")
 
 
 def _kept(array: np.ndarray) -> np.ndarray:
@@ -150,8 +148,3 @@ def _kept(array: np.ndarray) -> np.ndarray:
     copy = np.array(array)
     copy.flags.writeable = False
     return copy
-
-
-def _text(shape: tuple[int | str, ...]) -> str:
-    """A shape as one reads it, `(outputs, 64)`."""
-    return f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"

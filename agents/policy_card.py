@@ -175,6 +175,6 @@ def _plain(field: str, value: Any) -> dict[str, Any]:
     try:
         copy = json.loads(json.dumps(value, allow_nan=False))
     except (TypeError, ValueError) as problem:
-        raise type(problem)(f"{field} = {value!r} cannot be written as JSON: {problem}") from None
+        raise ValueError(f"{field} = {value!r} cannot be written as JSON: {problem}") from None
     assert isinstance(copy, dict)
     return copy

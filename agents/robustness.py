@@ -3,6 +3,7 @@
 import dataclasses
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -67,6 +68,22 @@ class ModelBeats:
     specific_power: float | None
     optimum_specific_power: float | None
     gap: float | None
+
+
+def robustness(policy: Predictor, insects: Sequence[Insect], problem: HoverProblem) -> tuple[dict[str, Any], str]:
+    """Both questions at once: their answers as JSON keeps them, and as text.
+
+    Args:
+        policy: what chooses the strokes.
+        insects: whose beats.
+        problem: what the policy was trained in.
+    """
+    noisy, models = noisy_beats(policy, insects, problem), other_models(policy, insects, problem)
+    results = {
+        "actuator_noise": [dataclasses.asdict(one) for one in noisy],
+        "other_models": [dataclasses.asdict(one) for one in models],
+    }
+    return results, f"{noise_table(noisy)}\n\n{model_table(models)}"
 
 
 def noisy_beats(

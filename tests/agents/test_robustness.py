@@ -2,15 +2,17 @@
 
 import dataclasses
 import itertools
+import json
 
 import numpy as np
 import pytest
 
 from agents.noisy_actuators import NoisyActuators
-from agents.robustness import ModelBeats, model_table, noise_table, noisy_beats, other_models
+from agents.robustness import ModelBeats, model_table, noise_table, noisy_beats, other_models, robustness
 from flapenv import INSECTS, HoverProblem, evaluate, load_insect, optimum
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.envs import HoverVectorEnv
+from flapenv.model import COEFFICIENTS
 
 EIGHT = [load_insect(name) for name in INSECTS]
 
@@ -63,6 +65,7 @@ def test_noise_can_only_cost_where_the_stroke_is_optimal(optimal: Optimal) -> No
         assert one.gap == pytest.approx(0, abs=1e-4)
         assert one.noisy_gap == pytest.approx(one.optimum_noisy_gap, abs=1e-6)
         assert one.low_weight_support < one.weight_support
+        assert 0.2 < one.noisy_gap < 0.4  # as the docstring says
 
 
 def test_zero_noise_changes_nothing(optimal: Optimal) -> None:
@@ -173,6 +176,15 @@ def test_the_tables_show_every_row(optimal: Optimal) -> None:
         for told in (True, False)
     ]
     assert [line.split()[:2] for line in model_table(rows).splitlines()[3:]] == [["robofly", "yes"], ["robofly", "no"]]
+
+
+def test_the_report_is_both_tables_and_plain_numbers(optimal: Optimal) -> None:
+    results, text = robustness(optimal, EIGHT[2:3], HoverProblem())
+    assert json.loads(json.dumps(results, allow_nan=False)) == results
+    assert results["actuator_noise"][0]["insect"] == "hawkmoth"
+    assert {row["model"] for row in results["other_models"]} == set(COEFFICIENTS)
+    assert text.count("hawkmoth") == 1
+    assert text.count("robofly") == 2
 
 
 def test_bad_arguments_are_refused(optimal: Optimal) -> None:
