@@ -137,7 +137,7 @@ class PolicyCard:
             if space.shape != (size,):
                 raise ValueError(
                     f"{name}s of shape {space.shape} do not fit a policy of {self.environment} with {name}s of {size} "
-                    f"numbers; allowed: an environment with the task's arguments, {json.dumps(self.task)}"
+                    f"numbers; allowed: environments made as in its training"
                 )
 
     @property

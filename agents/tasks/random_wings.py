@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.comparison import Comparison, comparison_table
 from agents.predictor import Predictor
+from agents.tasks.hover import described
 from agents.tasks.task import Verdict
 from agents.tasks.wing_flights import WingFlights, WingPool
 from flapenv.aero.checks import record, require_count
@@ -110,7 +111,7 @@ class RandomWingsTask:
             "problem": self.problem.to_dict(),
             "pool_size": self.pool_size,
             "pool_seed": self.pool_seed,
-            "leave_out": None if self.leave_out is None else self.leave_out.to_dict(),
+            "leave_out": None if self.leave_out is None else described(self.leave_out),
         }
 
 

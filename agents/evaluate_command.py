@@ -1,0 +1,141 @@
+"""`python train.py evaluate`: judge policies that were shipped or trained, in calm, with noise and in other models."""
+
+import argparse
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+DEFAULT_POLICY = "hover"
+"""The shipped policy that is judged where none is named."""
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    from agents.noisy_actuators import NOISE_SHARE
+
+    made = argparse.ArgumentParser(
+        prog="train.py evaluate",
+        description=(
+            "Judge policies against their task's reference: a shipped one, a run's, or a file. Weights are read from\n"
+            "safetensors and flown in NumPy; nothing is unpickled."
+        ),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples:\n"
+            "  python train.py evaluate --list                     the shipped policies\n"
+            "  python train.py evaluate                            the shipped one for the eight insects\n"
+            "  python train.py evaluate random-wings heave         others\n"
+            "  python train.py evaluate runs/hover-ppo-seed0 --insects hawkmoth\n"
+            "  python train.py evaluate hover --robustness         2 % actuator noise, and other coefficient models\n"
+            "  python train.py evaluate hover --problem profile-drag --out judged"
+        ),
+    )
+    made.add_argument(
+        "policies", nargs="*", metavar="POLICY", help=f"shipped name, run folder or file (default {DEFAULT_POLICY})"
+    )
+    made.add_argument("--list", action="store_true", help="list the shipped policies and end")
+    made.add_argument(
+        "--insects", nargs="+", metavar="NAME", help="other insects than those of the training, or of random wings"
+    )
+    made.add_argument("--problem", metavar="NAME", help="another problem with the same observations and actions")
+    made.add_argument(
+        "--noise",
+        type=float,
+        default=0.0,
+        metavar="SHARE",
+        help="actuator noise, its standard deviation over the range of the actions (default 0)",
+    )
+    made.add_argument(
+        "--robustness",
+        action="store_true",
+        help=f"Hover with named insects: noise of {NOISE_SHARE:g}, and the other coefficient models",
+    )
+    made.add_argument("--out", type=Path, metavar="DIR", help="keep results.json and the picture of each policy here")
+    return made
+
+
+def evaluate_command(arguments: list[str]) -> int:
+    """Judge the policies; 0 on success, 2 for bad input."""
+    options = parser().parse_args(arguments)
+    try:
+        if options.list:
+            print(shipped_table())
+            return 0
+        for policy in options.policies or [DEFAULT_POLICY]:
+            print(evaluated(policy, options), flush=True)
+    except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
+        print(f"train.py evaluate: {mistake}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def evaluated(policy: str, options: argparse.Namespace) -> str:
+    """One policy's verdict as text; files in the folder asked for.
+
+    Raises:
+        ValueError: for an unknown policy or one that does not fit what it is asked for.
+        TypeError: for arguments that its task does not have.
+        OSError: for files that cannot be read or written.
+    """
+    from agents.noisy_actuators import NoisyActuators
+    from agents.policy_file import load_policy
+    from agents.run_folder import RESULT_PICTURE, RESULTS, open_run_folder, versions, write_json
+
+    actor, card = load_policy(policy)
+    task = _task(card.task, {"insects": options.insects, "problem": options.problem})
+    card.require_fit(task.vector_env(1))
+    flown = NoisyActuators(actor, options.noise) if options.noise else actor
+    verdict = task.judge(flown)
+    title = f"{policy}: {card.algorithm} on {card.environment}, {card.wingbeats:,} wingbeats, seed {card.seed}"
+    text, results = f"{title}\n{verdict.text}", dict(verdict.results)
+    if options.robustness:
+        more, told = _robustness(actor, task)
+        text, results = f"{text}\n\n{told}", {**results, "robustness": more}
+    if options.out is not None:
+        folder = open_run_folder(options.out / Path(policy).name, "")
+        scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": task.distance}
+        about = {"policy": Path(policy).name, "sha256": card.sha256, "noise": options.noise, "verdict": scores}
+        write_json(folder / RESULTS, {**about, **results, "versions": versions()})
+        task.draw(flown).savefig(folder / RESULT_PICTURE)
+        text += f"\nkept in {folder}"
+    return text + "\n"
+
+
+def _task(described: Mapping[str, Any], asked: Mapping[str, Any]) -> Any:
+    """The task of a card with other arguments where they are asked for."""
+    from agents.presets import Preset
+    from agents.tasks import TASKS
+    from flapenv.aero.checks import require_name
+
+    own = {name: value for name, value in described.items() if name != "name"}
+    own |= {name: value for name, value in asked.items() if value is not None}
+    name = require_name("task", described.get("name"), TASKS)
+    if name == "random-wings" and own.get("insects"):  # a policy for every wing flies named ones, too
+        name, own = "hover", {key: own[key] for key in ("insects", "problem")}
+    return Preset(task=name, arguments=own, settings=None).make_task()
+
+
+def _robustness(actor: Any, task: Any) -> tuple[dict[str, Any], str]:
+    """Noise and other models, of policies of named insects in Hover."""
+    from agents.robustness import robustness
+    from agents.tasks.hover import HoverTask
+
+    if not isinstance(task, HoverTask):
+        raise ValueError(f"--robustness is not told of {task.environment} here; allowed: policies of named insects")
+    return robustness(actor, task.insects, task.problem)
+
+
+def shipped_table() -> str:
+    """The shipped policies with what their cards say."""
+    from agents.policy_file import load_policy, shipped_policies
+    from flapenv.tables import text_table
+
+    rows: list[tuple[str, ...]] = [("policy", "environment", "learner", "wingbeats", "seed", "mean %", "worst %", "of")]
+    for name in shipped_policies():
+        _, card = load_policy(name)
+        numbers = (card.result[key] for key in ("mean", "worst"))
+        told = ("-" if number is None else f"{100 * number:.3f}" for number in numbers)
+        beats, distance = f"{card.wingbeats:,}", str(card.result.get("distance", ""))
+        rows.append((name, card.environment, card.algorithm, beats, str(card.seed), *told, distance))
+    return text_table(rows)
