@@ -36,7 +36,7 @@ def parser() -> argparse.ArgumentParser:
     )
     made.add_argument("--list", action="store_true", help="list the shipped policies and end")
     made.add_argument(
-        "--insects", nargs="+", metavar="NAME", help="other insects than those of the training, or of random wings"
+        "--insects", nargs="+", metavar="NAME", help="other insects than those of the training"
     )
     made.add_argument("--problem", metavar="NAME", help="another problem with the same observations and actions")
     made.add_argument(
