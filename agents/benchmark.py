@@ -3,15 +3,13 @@
 A run is made in `NAME-seedN.part` and renamed when it has ended well, so that it is there whole or not at all.
 """
 
-import importlib
 import json
 import shutil
 import signal
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
 
@@ -20,6 +18,9 @@ from agents.machine import note_machine
 from agents.run_folder import CONFIG, RESULTS, RUNS, write_json
 from agents.subprocesses import ERRORS, Command, run_all
 from flapenv.aero.checks import record, require_count, require_name
+
+if TYPE_CHECKING:
+    from agents.presets import Preset
 
 PRESETS = (
     "hover-ppo",
@@ -40,9 +41,11 @@ COMMAND = "command.json"
 TRAIN = Path(__file__).parents[1] / "train.py"
 
 
-def registered() -> Mapping[str, Any]:
-    """The named presets, imported when first needed: the learners behind them take seconds to import."""
-    return importlib.import_module("agents.presets").PRESETS
+def registered() -> "Mapping[str, Preset]":
+    """The named presets, imported when first needed: help and reports do without them."""
+    from agents import presets
+
+    return presets.PRESETS
 
 
 @record
@@ -66,11 +69,10 @@ class Run:
 
     def described(self) -> dict[str, Any]:
         """What config.json must say of it."""
-        settings = registered()[self.preset]
-        if self.wingbeats is not None:
-            settings = replace(settings, wingbeats=self.wingbeats)
-        plain = settings.to_dict() if hasattr(settings, "to_dict") else asdict(settings)
-        return json.loads(json.dumps({"preset": self.preset, "seed": self.seed, "settings": plain}))
+        budget = {} if self.wingbeats is None else {"wingbeats": self.wingbeats}
+        preset = registered()[self.preset].changed({}, budget)
+        described: dict[str, Any] = {"preset": self.preset, "seed": self.seed, **preset.to_dict()}
+        return dict(json.loads(json.dumps(described)))  # tuples become lists, as in the file
 
 
 @record
@@ -168,7 +170,7 @@ def run_benchmark(
         failed: dict[str, str] = {}
         if todo:
             note_machine(root, config.jobs)
-        with tqdm(total=len(runs), initial=len(there), disable=not progress, unit=" runs", file=sys.stderr) as bar:
+        with tqdm(total=len(runs), initial=len(there), disable=not progress, unit="run", file=sys.stderr) as bar:
 
             def ended(over: Command, code: int) -> None:
                 bar.update()

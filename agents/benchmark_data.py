@@ -139,7 +139,7 @@ def collect(folders: Mapping[tuple[str, int], Path]) -> BenchmarkData:
                 RunRow(
                     preset=preset,
                     seed=seed,
-                    environment=results["task"]["environment"],
+                    environment=results["environment"],
                     distance=verdict["distance"],
                     mean=float(verdict["mean"]),
                     worst=float(verdict["worst"]),

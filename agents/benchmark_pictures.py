@@ -7,7 +7,7 @@ import numpy as np
 
 from agents.benchmark_data import BenchmarkData, CurvePoint
 from agents.benchmark_statistics import interquartile_mean, interval, last_known, profile
-from agents.pictures import COLOURS, DASHES
+from agents.competition_picture import COLOURS, DASHES
 from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def draw_all(data: BenchmarkData) -> dict[str, "Figure"]:
 
 def draw_final(data: BenchmarkData, presets: Sequence[str]) -> "Figure":
     """Interquartile mean of the final distances with its interval, and every seed."""
-    figure = _figure(7.2, 0.55 * len(presets) + 1.5)
+    figure = _figure(7.2, 0.45 * len(presets) + 1.4)
     axes = figure.add_subplot()
     for place, preset in enumerate(presets):
         values = 100 * np.array([run.mean for run in data.runs_of(preset)])

@@ -6,8 +6,8 @@ import os
 import re
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,9 +16,11 @@ from agents import benchmark
 from agents.benchmark import BenchmarkConfig, Run, differences, run_benchmark, train_command
 from agents.benchmark_command import benchmark_command
 from agents.folder_lock import LOCK, locked
-from agents.run_folder import CONFIG, RESULTS
+from agents.presets import Preset
+from agents.presets.ppo import PPOSettings
+from agents.run_folder import RESULTS
 from agents.subprocesses import ERRORS, PRINTED
-from flapenv.aero.checks import record
+from agents.training import TrainingConfig
 
 FAKE = """
 import json, os, pathlib, sys, time
@@ -40,7 +42,7 @@ print("trained", os.environ["OMP_NUM_THREADS"])
 lines = "wingbeats,seconds,mean_reward,mean_gap,worst_gap", "10,0.1,-2,0.5,1", "20,0.2,-1,0.004,0.01"
 (out / "curve.csv").write_text("\\n".join(lines))
 results = {
-    "preset": name, "seed": int(seed), "task": {"environment": "flapenv/Hover-v0"}, "wingbeats": int(wingbeats),
+    "preset": name, "seed": int(seed), "environment": "flapenv/Hover-v0", "wingbeats": int(wingbeats),
     "verdict": {"mean": 0.004 + 0.001 * int(seed), "worst": 0.01, "distance": "gap to the optimum"},
     "seconds": 0.2, "insects": {"hawkmoth": {"gap_percent": 0.4}, "cranefly": {"gap_percent": None}},
 }
@@ -51,12 +53,8 @@ with open(out.parent / "diary", "a") as diary:
 """
 
 
-@record
-class Settings:
-    """Stands in for a learner's settings."""
-
-    wingbeats: int = 20
-    learning_rate: float = 0.1
+def hover_preset(**settings: Any) -> Preset:
+    return Preset(task="hover", settings=PPOSettings(**{"wingbeats": 20, "learning_rate": 0.1, **settings}))
 
 
 def faked(**what: str) -> Callable[[Run, Path], Sequence[str]]:
@@ -73,10 +71,10 @@ def faked(**what: str) -> Callable[[Run, Path], Sequence[str]]:
 
 
 @pytest.fixture(autouse=True)
-def presets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Settings]:
+def presets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Preset]:
     """A registry of three presets."""
-    registry = {name: Settings() for name in ("hover-ppo", "hover-sac", "heave-ppo")}
-    monkeypatch.setattr(agents.presets, "PRESETS", registry, raising=False)
+    registry = {name: hover_preset() for name in ("hover-ppo", "hover-sac", "heave-ppo")}
+    monkeypatch.setattr(agents.presets, "PRESETS", registry)
     return registry
 
 
@@ -146,6 +144,7 @@ def test_ctrl_c_ends_what_runs_and_the_same_command_goes_on(tmp_path: Path, caps
     assert benchmark_command(arguments, command=faked()) == 0
     assert diary(tmp_path).count("begin hover-ppo-seed0") == 1
     assert (tmp_path / "runs.csv").read_text().count("\n") == 5
+    assert f"kept in {tmp_path}" in capsys.readouterr().out
 
 
 def test_a_failed_run_is_named_with_its_last_words_and_the_others_go_on(
@@ -161,12 +160,12 @@ def test_a_failed_run_is_named_with_its_last_words_and_the_others_go_on(
     assert "ended with 1 of 4 runs" in said
     assert (tmp_path / "hover-ppo-seed0.part" / ERRORS).read_text() == "first line\nthe wing fell off\n"
     assert (tmp_path / "runs.csv").read_text().count("\n") == 2
-    assert benchmark_command(arguments, command=faked()) == 0
+    assert not run_benchmark(config(), tmp_path, command=faked(), progress=False).failed
 
 
-def test_a_run_made_with_other_settings_is_refused(tmp_path: Path, presets: dict[str, Settings]) -> None:
+def test_a_run_made_with_other_settings_is_refused(tmp_path: Path, presets: dict[str, Preset]) -> None:
     run_benchmark(config(seeds=1), tmp_path, command=faked(), progress=False)
-    presets["hover-sac"] = Settings(learning_rate=0.2)
+    presets["hover-sac"] = hover_preset(learning_rate=0.2)
     with pytest.raises(
         ValueError, match=r"hover-sac-seed0 was made .* settings.learning_rate = 0.1 there, wanted 0.2;"
     ):
@@ -216,11 +215,10 @@ def test_the_command_of_a_run_is_the_one_a_reader_would_type(tmp_path: Path) -> 
 
 
 def test_a_run_is_described_as_its_config_file_describes_it() -> None:
-    assert Run(preset="hover-ppo", seed=1, wingbeats=7).described() == {
-        "preset": "hover-ppo",
-        "seed": 1,
-        "settings": asdict(Settings(wingbeats=7)),
-    }
+    described = Run(preset="hover-ppo", seed=1, wingbeats=7).described()
+    config = TrainingConfig(preset=hover_preset(wingbeats=7), seed=1, name="hover-ppo")
+    assert described == json.loads(json.dumps(config.to_dict()))
+    assert described["settings"]["wingbeats"] == 7
 
 
 @pytest.mark.parametrize(
@@ -248,10 +246,5 @@ def test_bad_input_is_one_line_and_exit_code_2(
     assert re.fullmatch(f"train.py benchmark: .*({said}).*\n", printed.err)
 
 
-def test_the_registry_is_that_of_the_learners(presets: dict[str, Settings]) -> None:
+def test_the_registry_is_that_of_the_learners(presets: dict[str, Preset]) -> None:
     assert benchmark.registered() is presets
-
-
-def test_config_files_are_read_as_they_are(tmp_path: Path) -> None:
-    run_benchmark(config("heave-ppo", seeds=1), tmp_path, command=faked(), progress=True)
-    assert json.loads((tmp_path / "heave-ppo-seed0" / CONFIG).read_text())["settings"] == asdict(Settings())

@@ -22,7 +22,7 @@ from agents.benchmark_data import (
     save,
     thinned,
 )
-from agents.benchmark_pictures import CURVES_PICTURE, FINAL_PICTURE, OTHERS_PICTURE, PROFILE_PICTURE
+from agents.benchmark_pictures import CURVES_PICTURE, FINAL_PICTURE, OTHERS_PICTURE, PROFILE_PICTURE, draw_final
 from agents.benchmark_report import PAGE, TABLE, percent, reached_rows, spent_rows, text_report
 from agents.benchmark_statistics import (
     first_below,
@@ -51,7 +51,7 @@ def make_run(folder: Path, preset: str, seed: int) -> None:
             writer.writerow((1000 * number, 0.5 * number, -1.0 - gap, gap, 2 * gap))
     results = {
         "preset": preset,
-        "task": {"environment": "flapenv/Heave-v0" if preset == "heave-ppo" else "flapenv/Hover-v0"},
+        "environment": "flapenv/Heave-v0" if preset == "heave-ppo" else "flapenv/Hover-v0",
         "seed": seed,
         "verdict": {"mean": final, "worst": 3 * abs(final), "distance": "gap to the optimum"},
         "wingbeats": 1000 * FULL_POINTS,
@@ -94,8 +94,8 @@ def test_the_interval_holds_the_interquartile_mean_and_needs_two_runs(rng: np.ra
 
 
 def test_the_interval_covers_the_truth_nearly_as_often_as_it_says(rng: np.random.Generator) -> None:
-    found = [interval(rng.normal(size=40)) for _ in range(40)]
-    assert sum(one is not None and one[0] <= 0 <= one[1] for one in found) >= 34
+    found = [interval(rng.normal(size=40)) for _ in range(20)]
+    assert sum(one is not None and one[0] <= 0 <= one[1] for one in found) >= 17
 
 
 def test_a_profile_rises_from_none_to_all(rng: np.random.Generator) -> None:
@@ -198,18 +198,16 @@ def test_one_run_has_a_table_too() -> None:
 def test_the_report_is_redrawn_from_the_kept_numbers_alone(
     data: BenchmarkData, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name in ("here", "there"):
-        (tmp_path / name).mkdir()
-        save(data, tmp_path / name)
-        note_machine(tmp_path / name, 2)
-        assert benchmark_command(["--report", str(tmp_path / name)]) == 0
-    printed = capsys.readouterr().out
-    assert (tmp_path / "here" / TABLE).read_text(encoding="utf-8") in printed
-    for name in (TABLE, PAGE, FINAL_PICTURE, CURVES_PICTURE, PROFILE_PICTURE, OTHERS_PICTURE):
-        content = (tmp_path / "here" / name).read_bytes()
-        assert content == (tmp_path / "there" / name).read_bytes()
-        assert len(content) < 150_000
-        assert not name.endswith(".png") or len(content) > 10_000
+    save(data, tmp_path)
+    note_machine(tmp_path, 2)
+    assert benchmark_command(["--report", str(tmp_path)]) == 0
+    assert (tmp_path / TABLE).read_text(encoding="utf-8") in capsys.readouterr().out
+    assert f"- {machine_text(read_machines(tmp_path))}" in (tmp_path / PAGE).read_text(encoding="utf-8")
+    for name in (FINAL_PICTURE, CURVES_PICTURE, PROFILE_PICTURE, OTHERS_PICTURE):
+        assert 10_000 < (tmp_path / name).stat().st_size < 150_000
+    again = draw_final(load(tmp_path), ["hover-ppo", "hover-gradient"])
+    again.savefig(tmp_path / "again.png", metadata={"Software": None})
+    assert (tmp_path / "again.png").read_bytes() == (tmp_path / FINAL_PICTURE).read_bytes()
 
 
 def test_numbers_that_were_tampered_with_are_refused_with_file_and_line(data: BenchmarkData, tmp_path: Path) -> None:
