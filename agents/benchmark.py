@@ -7,6 +7,7 @@ import json
 import shutil
 import signal
 import sys
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -218,17 +219,22 @@ def differences(wanted: Mapping[str, Any], found: Mapping[str, Any], within: str
         if isinstance(value, Mapping) and isinstance(found.get(key), Mapping):
             said += differences(value, found[key], f"{name}.")
         elif key not in found:
-            said.append(f"{name} is missing there, wanted {value!r}")
+            said.append(f"{name} is missing there, wanted {_short(value)}")
         elif found[key] != value:
-            said.append(f"{name} = {found[key]!r} there, wanted {value!r}")
+            said.append(f"{name} = {_short(found[key])} there, wanted {_short(value)}")
     return said
+
+
+def _short(value: object) -> str:
+    """A value as an error can show it."""
+    return textwrap.shorten(repr(value), 80, placeholder=" ...")
 
 
 def _clear(part: Path) -> None:
     """Remove what an interrupted or failed run left."""
     if not part.exists():
         return
-    if not (part / COMMAND).is_file():
+    if not (part / COMMAND).is_file() and any(part.iterdir()):
         raise FileExistsError(f"{part} is in the way: no benchmark made it; allowed: another folder, or move it")
     shutil.rmtree(part)
 

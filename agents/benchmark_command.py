@@ -91,12 +91,12 @@ def _conclude(config: BenchmarkConfig, outcome: BenchmarkOutcome, root: Path, ou
             write_machines(out, machines)
             print(f"{write_report(data, out)}\n\nkept in {out}")
     sys.stdout.flush()
-    for name, why in outcome.failed.items():
-        print(f"{name} failed: {why}", file=sys.stderr)
     if len(outcome.finished) < total:
         how = "stopped with" if outcome.interrupted else "ended with"
+        failed = f" (failed: {', '.join(outcome.failed)})" if outcome.failed else ""
         print(
-            f"train.py benchmark: {how} {len(outcome.finished)} of {total} runs in {root}; the same command goes on",
+            f"train.py benchmark: {how} {len(outcome.finished)} of {total} runs in {root}{failed}; "
+            "the same command goes on",
             file=sys.stderr,
         )
     return 130 if outcome.interrupted else 1 if outcome.failed else 0

@@ -67,7 +67,7 @@ def notes(data: BenchmarkData, machine: str) -> list[str]:
     """What the columns mean and where the seconds were measured."""
     said = [
         "IQM: interquartile mean over seeds of the last policy's mean distance (of five seeds, the middle three)",
-        "worst: largest distance of any seed and insect or, of random wings and flights, of any seed's 95th percentile",
+        "worst: of the worst seed, on its worst insect or, of many random wings, at their 95th percentile",
     ]
     for words, runs in _distances(data).items():
         said.append(f"distance of {', '.join(dict.fromkeys(run.preset for run in runs))}: {words}")

@@ -1,7 +1,6 @@
 """Commands in processes of their own, a few at a time; Ctrl-C ends them all and leaves none behind."""
 
 import contextlib
-import itertools
 import os
 import signal
 import subprocess
@@ -62,19 +61,21 @@ def run_all(
     running: list[tuple[Command, subprocess.Popen[bytes]]] = []
     with _counted_signals() as signals:
         try:
-            while not signals:
+            while True:
                 over = [one for one in running if one[1].poll() is not None]
                 for command, process in over:
                     running.remove((command, process))
                     ended(command, process.returncode)
-                begun = list(itertools.islice(waiting, at_once - len(running)))
-                running += [(command, _start(command, inherited)) for command in begun]
+                if signals:
+                    return False
+                kept = len(running)
+                while len(running) < at_once and (following := next(waiting, None)) is not None:
+                    running.append((following, _start(following, inherited)))
                 if not running:
                     return True
-                if over or begun:
+                if over or len(running) > kept:
                     changed([command.name for command, _ in running])
                 time.sleep(GLANCE)
-            return False
         finally:
             _stop([process for _, process in running], signals)
 

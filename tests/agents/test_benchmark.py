@@ -5,6 +5,7 @@ import json
 import os
 import re
 import sys
+import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 import pytest
 
 import agents.presets
-from agents import benchmark
+from agents import benchmark, subprocesses
 from agents.benchmark import BenchmarkConfig, Run, differences, run_benchmark, train_command
 from agents.benchmark_command import benchmark_command
 from agents.folder_lock import LOCK, locked
@@ -147,6 +148,22 @@ def test_ctrl_c_ends_what_runs_and_the_same_command_goes_on(tmp_path: Path, caps
     assert f"kept in {tmp_path}" in capsys.readouterr().out
 
 
+def test_a_run_that_will_not_end_is_killed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(subprocesses, "PATIENCE", 0.2)
+    stubborn = "import os, signal, time; signal.signal(15, signal.SIG_IGN); os.kill(os.getppid(), 2); time.sleep(60)"
+
+    def command(_: Run, __: Path) -> list[str]:
+        return [sys.executable, "-I", "-S", "-c", stubborn]
+
+    started = time.monotonic()
+    outcome = run_benchmark(config("hover-ppo", seeds=1), tmp_path, command=command, progress=False)
+    assert outcome.interrupted
+    assert not outcome.finished
+    assert time.monotonic() - started < 20
+    with pytest.raises(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+
+
 def test_a_failed_run_is_named_with_its_last_words_and_the_others_go_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -157,7 +174,8 @@ def test_a_failed_run_is_named_with_its_last_words_and_the_others_go_on(
     assert "hover-ppo-seed0 failed: the wing fell off (exit code 1; see " in said
     assert "hover-sac-seed0 failed: it said nothing (killed by SIGKILL; see " in said
     assert f"hover-ppo-seed1 failed: it ended without {RESULTS}" in said
-    assert "ended with 1 of 4 runs" in said
+    failed = "hover-ppo-seed0, hover-sac-seed0, hover-ppo-seed1"
+    assert re.search(rf"ended with 1 of 4 runs in .* \(failed: {failed}\); the same command goes on\n", said)
     assert (tmp_path / "hover-ppo-seed0.part" / ERRORS).read_text() == "first line\nthe wing fell off\n"
     assert (tmp_path / "runs.csv").read_text().count("\n") == 2
     assert not run_benchmark(config(), tmp_path, command=faked(), progress=False).failed
@@ -185,8 +203,10 @@ def test_folders_of_others_are_never_removed(tmp_path: Path) -> None:
         ("hover-ppo-seed0.part", "no bench"),
     ):
         (tmp_path / name).mkdir()
+        (tmp_path / name / "thesis.txt").touch()
         with pytest.raises(FileExistsError, match=f"{re.escape(name)} is in the way.*{said}"):
             run_benchmark(config(), tmp_path, command=faked(), progress=False)
+        (tmp_path / name / "thesis.txt").unlink()
         (tmp_path / name).rmdir()
 
 
