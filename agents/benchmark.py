@@ -190,8 +190,11 @@ def run_benchmark(
                 ended=ended,
                 inherited=lock,
             )
-    finished = [run for run in runs if run in there]
-    return BenchmarkOutcome(finished=finished, failed=failed, interrupted=not completed)
+    return BenchmarkOutcome(
+        finished=[run for run in runs if run in there],
+        failed={run.name: failed[run.name] for run in runs if run.name in failed},
+        interrupted=not completed,
+    )
 
 
 def _is_there(run: Run, root: Path) -> bool:
