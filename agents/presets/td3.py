@@ -1,0 +1,77 @@
+"""Settings of TD3, and its presets."""
+
+from typing import Any
+
+import numpy as np
+from stable_baselines3 import TD3
+from stable_baselines3.common.noise import ActionNoise, NormalActionNoise, VectorizedActionNoise
+from stable_baselines3.common.vec_env import VecEnv
+
+from agents.presets.off_policy import OffPolicySettings, fallen
+from flapenv.aero.checks import record, require_count, require_scalar
+
+
+class FallingNoise(ActionNoise):
+    """White noise whose size is set from outside; drawn as `NormalActionNoise` draws, from what the model seeds."""
+
+    def __init__(self, size: float, axes: int) -> None:
+        """Noise of standard deviation `size` on each of `axes` axes."""
+        super().__init__()
+        self.size = size
+        self._unit = NormalActionNoise(np.zeros(axes), np.ones(axes))
+
+    def __call__(self) -> np.ndarray:
+        """One draw, shape (axes,)."""
+        return self.size * self._unit()
+
+
+@record
+class TD3Settings(OffPolicySettings):
+    """Twin delayed deterministic policy gradient.
+
+    Attributes:
+        policy_delay: gradient steps of the critic for one of the actor. A slow actor does not run into a wrong face of
+            the box, where its tanh saturates and it stays, before the critic is right.
+        noise: standard deviation of the actions flown at the start, in units of the cube.
+        last_noise: at the end; it falls geometrically.
+        noise_until: fraction of the budget at which the last noise is reached.
+    """
+
+    policy_delay: int = 4
+    noise: float = 0.6
+    last_noise: float = 0.005
+    noise_until: float = 0.9
+
+    def __post_init__(self) -> None:
+        """Check every field."""
+        super().__post_init__()
+        require_count("policy_delay", self.policy_delay)
+        for name in ("noise", "last_noise"):
+            require_scalar(name, getattr(self, name), 0.0, open_low=True)
+        require_scalar("noise_until", self.noise_until, 0.0, 1.0, open_low=True)
+
+    def noise_at(self, left: float) -> float:
+        """Standard deviation of the actions flown with the fraction `left` of the budget still to go."""
+        return fallen(self.noise, self.last_noise, left, self.noise_until)
+
+    def anneal(self, model: Any, left: float) -> None:
+        """Set the noise of every row."""
+        noise = model.action_noise  # one a row, but where there is one row only
+        rows: Any = noise.noises if isinstance(noise, VectorizedActionNoise) else [noise]
+        for row in rows:
+            row.size = self.noise_at(left)
+
+    def build(self, env: VecEnv, seed: int) -> TD3:
+        """The model with random weights on `env`."""
+        shape = env.action_space.shape
+        assert shape is not None
+        return TD3(
+            "MlpPolicy",
+            env,
+            policy_delay=self.policy_delay,
+            action_noise=FallingNoise(self.noise, shape[0]),
+            **self.arguments(seed),
+        )
+
+
+PRESETS: dict[str, TD3Settings] = {"hover-td3": TD3Settings()}
