@@ -35,9 +35,7 @@ def parser() -> argparse.ArgumentParser:
         "policies", nargs="*", metavar="POLICY", help=f"shipped name, run folder or file (default {DEFAULT_POLICY})"
     )
     made.add_argument("--list", action="store_true", help="list the shipped policies and end")
-    made.add_argument(
-        "--insects", nargs="+", metavar="NAME", help="other insects than those of the training"
-    )
+    made.add_argument("--insects", nargs="+", metavar="NAME", help="other insects than those of the training")
     made.add_argument("--problem", metavar="NAME", help="another problem with the same observations and actions")
     made.add_argument(
         "--noise",
@@ -50,6 +48,11 @@ def parser() -> argparse.ArgumentParser:
         "--robustness",
         action="store_true",
         help=f"Hover with named insects: noise of {NOISE_SHARE:g}, and the other coefficient models",
+    )
+    made.add_argument(
+        "--costs",
+        action="store_true",
+        help="random wings: what a new wing costs, beside multi-start SLSQP and the batched optimum",
     )
     made.add_argument("--out", type=Path, metavar="DIR", help="keep results.json and the picture of each policy here")
     return made
@@ -90,8 +93,11 @@ def evaluated(policy: str, options: argparse.Namespace) -> str:
     title = f"{policy}: {card.algorithm} on {card.environment}, {card.wingbeats:,} wingbeats, seed {card.seed}"
     text, results = f"{title}\n{verdict.text}", dict(verdict.results)
     if options.robustness:
-        more, told = _robustness(actor, task)
-        text, results = f"{text}\n\n{told}", {**results, "robustness": more}
+        shaken, told = _robustness(actor, task)
+        text, results = f"{text}\n\n{told}", {**results, "robustness": shaken}
+    if options.costs:
+        costs, told = _costs(actor, task, card.wingbeats)
+        text, results = f"{text}\n\n{told}", {**results, "costs": costs}
     if options.out is not None:
         folder = open_run_folder(options.out / Path(policy).name, "")
         scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": task.distance}
@@ -119,11 +125,21 @@ def _task(described: Mapping[str, Any], asked: Mapping[str, Any]) -> Any:
 def _robustness(actor: Any, task: Any) -> tuple[dict[str, Any], str]:
     """Noise and other models, of policies of named insects in Hover."""
     from agents.robustness import robustness
-    from agents.tasks.hover import HoverTask
+    from agents.tasks import HoverTask
 
     if not isinstance(task, HoverTask):
         raise ValueError(f"--robustness is not told of {task.environment} here; allowed: policies of named insects")
     return robustness(actor, task.insects, task.problem)
+
+
+def _costs(actor: Any, task: Any, wingbeats: int) -> tuple[Any, str]:
+    """What a new wing costs, of policies for random wings."""
+    from agents.tasks import RandomWingsTask
+    from agents.wing_costs import costs_of
+
+    if not isinstance(task, RandomWingsTask):
+        raise ValueError(f"--costs are not told of {task.environment} with named insects; allowed: random wings")
+    return costs_of(actor, task.problem, wingbeats)
 
 
 def shipped_table() -> str:

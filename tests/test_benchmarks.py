@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import profile, speed
+from benchmarks import learning, profile, speed
 
 
 def test_every_case_runs_and_the_table_has_both_ratios(
@@ -43,4 +43,16 @@ def test_the_profile_has_the_floor_and_the_parts_of_a_step(
     profile.main()
     out = capsys.readouterr().out
     for word in ("floor", "sin", "tanh", "numba", "actions to strokes", "in all"):
+        assert word in out
+
+
+def test_learning_is_measured_from_the_environment_to_the_whole_learner(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(learning, "SECONDS", 1e-3)
+    monkeypatch.setattr(learning, "REPETITIONS", 1)
+    monkeypatch.setattr(learning, "SHARE", 0.002)
+    learning.main()
+    out = capsys.readouterr().out
+    for word in ("environment's step", "adapter", "collection", "PPO", "backward", "Adam"):
         assert word in out

@@ -11,7 +11,7 @@ from agents.tasks.random_wings import RandomWingsTask
 from agents.tasks.task import Task, Verdict
 from agents.tasks.waveform import WaveformTask
 
-__all__ = ["TASKS", "Predictor", "Task", "Verdict", "make_task"]
+__all__ = ["TASKS", "HoverTask", "Predictor", "RandomWingsTask", "Task", "Verdict", "make_task"]
 
 TASKS: dict[str, Callable[..., Task]] = {
     "hover": HoverTask,
