@@ -61,9 +61,9 @@ clients: client-ppo client-zoo client-rllib  ## Other projects' learners on ENV_
 client-ppo: $(STAMP)  ## One of them: the single-file PPO
 	OMP_NUM_THREADS=1 $(BIN)/python clients/single_file_ppo.py --env-id flapenv:$(ENV_ID) $(ARGS)
 
-client-zoo: $(ZOO)/.installed  ## One of them: rl-zoo3 with the recipes of clients/zoo
+client-zoo: $(ZOO)/.installed  ## One of them: rl-zoo3 with the recipes beside the presets
 	OMP_NUM_THREADS=1 $(ZOO)/bin/python -m rl_zoo3.train --algo $(ZOO_ALGO) --env $(ENV_ID) --gym-packages flapenv \
-		--conf-file clients/zoo/$(ZOO_ALGO).yml --seed 0 --device cpu --log-folder runs/zoo --eval-freq 10000 --eval-episodes 16 $(ARGS)
+		--conf-file agents/presets/$(ZOO_ALGO).yml --seed 0 --device cpu --log-folder runs/zoo --eval-freq 10000 --eval-episodes 16 $(ARGS)
 
 client-rllib: $(RLLIB)/.installed  ## One of them: RLlib, one process for the native vector environment
 	OMP_NUM_THREADS=1 $(RLLIB)/bin/python clients/rllib_ppo.py --env-id flapenv:$(ENV_ID) \

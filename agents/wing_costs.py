@@ -46,8 +46,9 @@ def wing_costs(policy: Predictor, problem: HoverProblem, seed: int = 0) -> list[
     """Seconds and wingbeats for a new wing by every way; the clock of this machine, on as many threads as it is given.
 
     The policy's time is that of its network alone, without the beat that shows what it is worth. The batched optimum
-    is that of `many_optima`, with its curve. SLSQP starts afresh from random points until its gap to the known optimum
-    is at most `SEARCH_GAP`, the median over wings; without knowing the optimum it could not stop there.
+    is that of `many_optima`, whose curve is solved once per process and not counted. SLSQP starts afresh from random
+    points until its gap to the known optimum is at most `SEARCH_GAP`, the median over wings; without knowing the
+    optimum it could not stop there.
 
     Args:
         policy: observations to actions.
@@ -112,8 +113,8 @@ def costs_table(costs: list[WingCost], wingbeats: int) -> str:
     if search.wingbeats and np.isfinite(search.wingbeats):
         wings = wingbeats / search.wingbeats
         lines.append(
-            f"{search.name}: to a gap of {100 * SEARCH_GAP:g} %, median of {SEARCHED} wings; the policy's training took "
-            f"as many wingbeats as {wings:,.0f} such searches"
+            f"{search.name}: to a gap of {100 * SEARCH_GAP:g} %, median of {SEARCHED} wings; the policy's training "
+            f"took as many wingbeats as {wings:,.0f} such searches"
         )
     return "\n".join(lines)
 

@@ -8,14 +8,15 @@ from typing import Any
 
 import pytest
 import yaml
-from stable_baselines3 import PPO, SAC
+from sb3_contrib import TQC, CrossQ
+from stable_baselines3 import PPO, SAC, TD3
 from stable_baselines3.common.env_util import make_vec_env
 
 from flapenv.envs import ENV_IDS
 
-FOLDER = Path(__file__).parents[2] / "clients" / "zoo"
-LEARNERS = {"ppo": PPO, "sac": SAC}
-ZOOS_OWN = ("n_timesteps", "n_envs", "policy")
+FOLDER = Path(__file__).parents[2] / "agents" / "presets"
+LEARNERS = {"ppo": PPO, "sac": SAC, "td3": TD3, "tqc": TQC, "crossq": CrossQ}
+ZOOS_OWN = ("n_timesteps", "n_envs", "policy", "noise_type", "noise_std")
 """Keys that the zoo reads itself; it hands the rest to the learner."""
 
 
@@ -24,7 +25,7 @@ def recipes(name: str) -> dict[str, dict[str, Any]]:
 
 
 def test_every_recipe_file_is_tested_here() -> None:
-    assert {path.stem for path in FOLDER.iterdir()} == set(LEARNERS)
+    assert {path.stem for path in FOLDER.glob("*.yml")} == set(LEARNERS)
 
 
 @pytest.mark.parametrize("name", LEARNERS)
