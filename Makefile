@@ -9,7 +9,7 @@ RLLIB := .venv-rllib
 ENV_ID ?= flapenv/Hover-v0
 ZOO_ALGO ?= ppo
 
-.PHONY: help train test test-fast test-floor lint format bench validate clients client-ppo client-zoo client-rllib clean
+.PHONY: help train test test-fast test-floor lint format bench benchmark validate clients client-ppo client-zoo client-rllib clean
 
 help:  ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -50,8 +50,12 @@ format: $(STAMP)  ## Let ruff mend what it can
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-bench: $(STAMP)  ## Wingbeats a second of the oracle, the fast path and the vector environment
+bench: $(STAMP)  ## Wingbeats a second of the oracle, the fast path, the environments and of learning
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 $(BIN)/python -m benchmarks.speed
+	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 MKL_NUM_THREADS=1 $(BIN)/python -m benchmarks.learning
+
+benchmark: $(STAMP)  ## Every learner and every task, five seeds each, two at a time (an hour; goes on where it stopped)
+	$(BIN)/python train.py benchmark $(ARGS)
 
 validate: $(STAMP)  ## Tables 2 and 3 of the paper beside ours
 	$(BIN)/python -m flapenv.validation

@@ -5,7 +5,6 @@ A policy spends its wingbeats once, in training, and one more on each wing it is
 """
 
 import contextlib
-import json
 import sys
 import warnings
 from collections.abc import Sequence
@@ -45,7 +44,7 @@ class CompetitionConfig:
         competitors: names of `COMPETITORS`.
         wingbeats: budget of each search.
         seeds: how many searches of each kind on each wing.
-        policies: run folders of trained policies.
+        policies: names of shipped policies, or run folders.
     """
 
     problem: Any = "free-frequency"
@@ -83,7 +82,7 @@ class PolicyScore:
     Attributes:
         name: of its run folder.
         wingbeats: it was trained with.
-        seconds: it was trained for.
+        seconds: it was trained for; NaN where its card does not tell.
         gaps: on every wing [-].
     """
 
@@ -156,18 +155,16 @@ def compete(config: CompetitionConfig, *, progress: bool = True) -> CompetitionR
 
 
 def _policy_score(folder: Path, insects: tuple[Insect, ...], problem: HoverProblem) -> PolicyScore:
-    """A run folder's policy on the insects."""
+    """A policy on the insects, shipped or of a run folder."""
     actor, card = load_policy(folder)
     if card.environment != HOVER:
         raise ValueError(f"policy {folder} flies {card.environment}; allowed: policies of {HOVER}")
     trained = as_problem(card.task["problem"])
     if trained.box != problem.box or trained.model != problem.model:
         raise ValueError(f"policy {folder} was trained for {trained.name}; allowed: {problem.name}")
-    results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
     gaps = Comparison(insects, problem).gaps(actor)
-    return PolicyScore(
-        name=folder.name, wingbeats=int(results["wingbeats"]), seconds=float(results["seconds"]), gaps=gaps
-    )
+    seconds = float(card.result.get("seconds", float("nan")))
+    return PolicyScore(name=folder.name, wingbeats=card.wingbeats, seconds=seconds, gaps=gaps)
 
 
 def checkpoints(config: CompetitionConfig) -> list[int]:

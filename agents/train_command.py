@@ -26,6 +26,7 @@ def parser() -> argparse.ArgumentParser:
             "With no argument: one policy for all eight insects, from random weights, on the CPU, in a few minutes."
         ),
         formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
         epilog=(
             "examples:\n"
             "  python train.py                              all eight insects, seed 0, into runs/hover-ppo-seed0/\n"
@@ -82,7 +83,7 @@ def train_command(arguments: list[str]) -> int:
         print(presets_table())
         return 0
     try:
-        config = config_of(options, shlex.join(["python", "train.py", *arguments]))
+        config = config_of(options, shlex.join(["python", "train.py", *what_counts(arguments)]))
         from agents.training import summary, train
 
         result = train(config, options.out, progress=not options.quiet)
@@ -94,6 +95,17 @@ def train_command(arguments: list[str]) -> int:
         return 2
     print(summary(result), flush=True)
     return 130 if result.interrupted else 0
+
+
+def what_counts(arguments: list[str]) -> list[str]:
+    """The arguments that a run depends on: not where it is kept, nor whether it shows a bar."""
+    kept, rest = [], iter(arguments)
+    for one in rest:
+        if one == "--out":
+            next(rest, None)
+        elif one != "--quiet" and not one.startswith("--out="):
+            kept.append(one)
+    return kept
 
 
 def config_of(options: argparse.Namespace, command: str) -> Any:

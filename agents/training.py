@@ -165,7 +165,7 @@ def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgo
         command=config.command,
         seed=config.seed,
         wingbeats=result.wingbeats,
-        result=scores,
+        result={**scores, "seconds": round(result.seconds, 1)},
         versions=versions(),
     )
     save_policy(actor, card, result.out / POLICY_TENSORS)

@@ -133,3 +133,10 @@ def test_help_teaches_and_the_list_names_every_preset() -> None:
     out, _ = command("--list").communicate(timeout=60)
     for name in PRESETS:
         assert name in out
+
+
+def test_the_card_tells_the_command_without_where_it_is_kept(tmp_path: Path) -> None:
+    from agents.train_command import what_counts
+
+    asked = ["--seed", "3", "--out", str(tmp_path), "--quiet", f"--out={tmp_path}", "--insects", "hawkmoth"]
+    assert what_counts(asked) == ["--seed", "3", "--insects", "hawkmoth"]
