@@ -32,7 +32,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--wingbeats", type=int, default=10_000, metavar="N", help="budget of a search (default 10,000)")
     made.add_argument("--seeds", type=int, default=5, metavar="N", help="searches of each kind a wing (default 5)")
     made.add_argument(
-        "--policy", type=Path, action="append", default=[], metavar="DIR", help="shipped name or run folder; repeatable"
+        "--policy", type=Path, action="append", default=[], metavar="DIR", help="shipped or run folder; repeatable"
     )
     made.add_argument(
         "--out", type=Path, metavar="DIR", help="folder without a run in it (default runs/compare-PROBLEM/)"

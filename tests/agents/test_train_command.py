@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+import train
 from agents.presets import DEFAULT_PRESET, PRESETS
+from agents.train_command import what_counts
 
 ROOT = Path(__file__).parents[2]
 
@@ -54,6 +56,13 @@ def test_ctrl_c_while_everything_is_being_loaded_is_one_line(tmp_path: Path) -> 
         assert "Traceback" not in err or process.returncode != 130
 
 
+def test_a_mistake_on_the_command_line_ends_the_program_with_code_2(tmp_path: Path) -> None:
+    process = command("--preset", "hover-pp", "--out", str(tmp_path / "run"))
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert len(err.strip().splitlines()) == 1
+
+
 CONFIG = {"task": {"name": "hover"}, "algorithm": "PPO", "settings": {"wingbeats": 512, "rows": 512}}
 
 
@@ -79,10 +88,11 @@ CONFIG = {"task": {"name": "hover"}, "algorithm": "PPO", "settings": {"wingbeats
         (("--config", "nowhere.json"), "nowhere.json"),
     ],
 )
-def test_bad_input_is_one_line_and_exit_code_2(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:
-    process = command(*arguments, "--out", str(tmp_path / "run"))
-    _, err = process.communicate(timeout=60)
-    assert process.returncode == 2
+def test_bad_input_is_one_line_and_exit_code_2(
+    arguments: tuple[str, ...], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert train.main([*arguments, "--out", str(tmp_path / "run")]) == 2
+    err = capsys.readouterr().err
     assert said in err
     assert len(err.strip().splitlines()) == 1
     assert not (tmp_path / "run").exists()
@@ -104,8 +114,6 @@ def test_bad_input_is_one_line_and_exit_code_2(arguments: tuple[str, ...], said:
 def test_a_config_file_with_a_mistake_is_one_line(
     content: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import train
-
     (tmp_path / "config.json").write_text(content, encoding="utf-8")
     assert train.main(["--config", str(tmp_path / "config.json"), "--out", str(tmp_path / "run")]) == 2
     err = capsys.readouterr().err
@@ -114,8 +122,6 @@ def test_a_config_file_with_a_mistake_is_one_line(
 
 
 def test_a_run_is_repeated_from_its_config(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    import train
-
     small = ["--insects", "hawkmoth", "--wingbeats", "1024", "--set", "rows=512", "--set", "epochs=1", "--quiet"]
     assert train.main([*small, "--seed", "5", "--out", str(tmp_path / "a")]) == 0
     again = ["--config", str(tmp_path / "a" / "config.json"), "--out", str(tmp_path / "b"), "--quiet"]
@@ -136,7 +142,5 @@ def test_help_teaches_and_the_list_names_every_preset() -> None:
 
 
 def test_the_card_tells_the_command_without_where_it_is_kept(tmp_path: Path) -> None:
-    from agents.train_command import what_counts
-
     asked = ["--seed", "3", "--out", str(tmp_path), "--quiet", f"--out={tmp_path}", "--insects", "hawkmoth"]
     assert what_counts(asked) == ["--seed", "3", "--insects", "hawkmoth"]
