@@ -33,7 +33,7 @@ def draw_learning_curve(out: Path, distance: str, title: str) -> "Figure":
     figure = Figure(figsize=(7.2, 4.2), dpi=110, layout="constrained")
     axes = figure.add_subplot()
     for column, colour, dash, label in (
-        ("worst_gap", ORANGE, "--", "worst"),
+        ("worst_gap", ORANGE, "--", "worst, of many wings the 95th percentile"),
         ("mean_gap", BLUE, "-", "mean"),
     ):
         gap = 100 * np.array([float(row[column]) for row in rows])

@@ -117,8 +117,8 @@ class RandomWingsTask:
 
 def wings_table(flown: dict[str, WingFlights]) -> str:
     """Gaps, weight support and frequency errors, one line a split."""
-    header = ("random wings", "number", "mean gap", "median", "95 %", "worst", "rms error of f", "least weight")
-    units = ("", "", "%", "%", "%", "%", "%", "support")
+    header = ("random wings", "number", "mean gap", "median", "95 %", "worst", "rms error of f", "of weight support", "least")
+    units = ("", "", "%", "%", "%", "%", "%", "%", "")
     rows: list[tuple[str, ...]] = [header, units]
     for split, flights in flown.items():
         row = flights.to_dict()
@@ -129,6 +129,7 @@ def wings_table(flown: dict[str, WingFlights]) -> str:
                 f"{len(flights.gaps):,}",
                 *(f"{gap:.3f}" for gap in gaps),
                 f"{100 * flights.rms_frequency_error:.3f}",
+                f"{row['rms_weight_support_error_percent']:.3f}",
                 f"{row['least_weight_support']:.4f}",
             )
         )

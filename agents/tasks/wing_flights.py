@@ -56,6 +56,7 @@ class WingFlights:
             "worst_gap_percent": 100 * float(np.max(self.gaps)),
             "rms_frequency_error_percent": 100 * self.rms_frequency_error,
             "mean_frequency_error_percent": 100 * float(np.mean(self.frequency_error)),
+            "rms_weight_support_error_percent": 100 * math.sqrt(float(np.mean((self.weight_support - 1) ** 2))),
             "least_weight_support": float(np.min(self.weight_support)),
         }
 
