@@ -9,7 +9,9 @@ from flapenv.aero.checks import record, require_count
 
 @record
 class TQCSettings(MaximumEntropySettings):
-    """Truncated quantile critics; the reward of one wingbeat is certain, so few quantiles do and none is dropped.
+    """Truncated quantile critics. The reward of one wingbeat is certain, so few quantiles do and none is dropped.
+
+    The other fields are those of `MaximumEntropySettings`.
 
     Attributes:
         quantiles: of each critic.
