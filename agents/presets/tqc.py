@@ -14,10 +14,12 @@ class TQCSettings(MaximumEntropySettings):
     The other fields are those of `MaximumEntropySettings`.
 
     Attributes:
+        wingbeats: training budget, one wingbeat a row.
         quantiles: of each critic.
         dropped: largest quantiles of each critic that do not count, against overestimation.
     """
 
+    wingbeats: int = 400_000
     quantiles: int = 5
     dropped: int = 0
 
