@@ -1,9 +1,12 @@
 """Settings of CrossQ, and its presets."""
 
+from typing import Any
+
 from sb3_contrib import CrossQ
+from sb3_contrib.common.torch_layers import BatchRenorm
 from stable_baselines3.common.vec_env import VecEnv
 
-from agents.presets.off_policy import MaximumEntropySettings
+from agents.presets.off_policy import LEAST_LEFT, MaximumEntropySettings
 from flapenv.aero.checks import record, require_count, require_scalar
 
 
@@ -11,13 +14,23 @@ from flapenv.aero.checks import record, require_count, require_scalar
 class CrossQSettings(MaximumEntropySettings):
     """CrossQ: batch renormalisation in place of target networks.
 
+    The other fields are those of `MaximumEntropySettings`.
+
+    The running statistics follow every batch, and their noise moves the strokes of all wings at once: at a constant
+    momentum by more than a percent of the gap. So the momentum falls with the square of the budget that is left. A
+    buffer of recent wingbeats keeps the statistics from changing when they have become slow.
+
     Attributes:
+        wingbeats: training budget, one wingbeat a row.
+        buffer: wingbeats kept.
         policy_delay: gradient steps of the critic for one of the actor.
         norm_warmup: gradient steps before running statistics replace those of the batch.
-        norm_momentum: of the running statistics.
+        norm_momentum: of the running statistics at the start.
     """
 
-    policy_delay: int = 2
+    wingbeats: int = 200_000
+    buffer: int = 30_000
+    policy_delay: int = 3
     norm_warmup: int = 2_000
     norm_momentum: float = 0.01
 
@@ -27,6 +40,17 @@ class CrossQSettings(MaximumEntropySettings):
         require_count("policy_delay", self.policy_delay)
         require_count("norm_warmup", self.norm_warmup, low=0)
         require_scalar("norm_momentum", self.norm_momentum, 0.0, 1.0, open_low=True)
+
+    def norm_momentum_at(self, left: float) -> float:
+        """Momentum of the running statistics with the fraction `left` of the budget still to go."""
+        return float(self.norm_momentum * max(left, LEAST_LEFT) ** 2)
+
+    def anneal(self, model: Any, left: float) -> None:
+        """Set the price of entropy and the momentum."""
+        super().anneal(model, left)
+        for layer in model.policy.modules():
+            if isinstance(layer, BatchRenorm):
+                layer.momentum = self.norm_momentum_at(left)
 
     def build(self, env: VecEnv, seed: int) -> CrossQ:
         """The model with random weights on `env`."""

@@ -16,4 +16,7 @@ class SACSettings(MaximumEntropySettings):
         return SAC("MlpPolicy", env, ent_coef=self.entropy, **self.arguments(seed))
 
 
-PRESETS: dict[str, SACSettings] = {"hover-sac": SACSettings()}
+PRESETS: dict[str, SACSettings] = {
+    "hover-sac": SACSettings(),
+    "hover-sac-50k": SACSettings(wingbeats=50_000, rows=8, gradient_steps=3, buffer=20_000, learning_starts=1_000),
+}

@@ -27,9 +27,12 @@ class FallingNoise(ActionNoise):
 
 @record
 class TD3Settings(OffPolicySettings):
-    """Twin delayed deterministic policy gradient.
+    """Twin delayed deterministic policy gradient; the other fields are those of `OffPolicySettings`.
 
     Attributes:
+        wingbeats: training budget, one wingbeat a row.
+        learning_rate_power: the learning rate falls with this power of the budget that is left. The policy has no noise
+            of its own and hovers as exactly as the critic places the kink, which the small last steps decide.
         policy_delay: gradient steps of the critic for one of the actor. A slow actor does not run into a wrong face of
             the box, where its tanh saturates and it stays, before the critic is right.
         noise: standard deviation of the actions flown at the start, in units of the cube.
@@ -37,10 +40,12 @@ class TD3Settings(OffPolicySettings):
         noise_until: fraction of the budget at which the last noise is reached.
     """
 
+    wingbeats: int = 400_000
+    learning_rate_power: float = 2.0
     policy_delay: int = 4
     noise: float = 0.6
-    last_noise: float = 0.005
-    noise_until: float = 0.9
+    last_noise: float = 0.001
+    noise_until: float = 0.95
 
     def __post_init__(self) -> None:
         """Check every field."""

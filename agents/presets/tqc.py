@@ -9,13 +9,17 @@ from flapenv.aero.checks import record, require_count
 
 @record
 class TQCSettings(MaximumEntropySettings):
-    """Truncated quantile critics; the reward of one wingbeat is certain, so few quantiles do and none is dropped.
+    """Truncated quantile critics. The reward of one wingbeat is certain, so few quantiles do and none is dropped.
+
+    The other fields are those of `MaximumEntropySettings`.
 
     Attributes:
+        wingbeats: training budget, one wingbeat a row.
         quantiles: of each critic.
         dropped: largest quantiles of each critic that do not count, against overestimation.
     """
 
+    wingbeats: int = 400_000
     quantiles: int = 5
     dropped: int = 0
 

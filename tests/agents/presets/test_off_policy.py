@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 import yaml
 from sb3_contrib import TQC, CrossQ
+from sb3_contrib.common.torch_layers import BatchRenorm
 from stable_baselines3 import SAC, TD3
 from stable_baselines3.common.env_util import make_vec_env
 
@@ -43,6 +44,15 @@ def test_what_falls_falls_geometrically_and_then_stays() -> None:
     assert [settings.entropy_at(left) for left in (1.0, 0.6, 0.2, 0.0)] == pytest.approx([1, 1e-2, 1e-4, 1e-4])
     noisy = td3.TD3Settings(noise=0.4, last_noise=0.004, noise_until=1.0)
     assert [noisy.noise_at(left) for left in (1.0, 0.5, 0.0, -0.1)] == pytest.approx([0.4, 0.04, 0.004, 0.004])
+
+
+def test_running_statistics_follow_ever_more_slowly() -> None:
+    settings = crossq.CrossQSettings(wingbeats=200, rows=10, learning_starts=10, batch=8, norm_momentum=0.1)
+    assert [settings.norm_momentum_at(left) for left in (1.0, 0.5, 0.1)] == pytest.approx([0.1, 0.025, 0.001])
+    model = settings.build(hover(settings.rows), seed=0)
+    settings.anneal(model, 0.5)
+    momenta = [layer.momentum for layer in model.policy.modules() if isinstance(layer, BatchRenorm)]
+    assert momenta == pytest.approx([0.025] * 6)  # three layers of the actor, three of its one critic
 
 
 @pytest.mark.parametrize("name", PRESETS)
