@@ -1,4 +1,4 @@
-"""What happens beside the updates: the noise floor, the learning curve, checkpoints and the progress bar."""
+"""What happens beside the updates: what falls, the learning curve, checkpoints and the progress bar."""
 
 import csv
 import sys
@@ -10,8 +10,7 @@ import numpy as np
 from stable_baselines3.common.callbacks import BaseCallback
 from tqdm import tqdm
 
-from agents.policy import HoverPolicy
-from agents.presets.ppo import PPOSettings
+from agents.presets import Settings
 from agents.run_folder import CURVE, POLICY, write_atomically
 from agents.tasks import Task
 
@@ -22,18 +21,16 @@ FINEST = 0.1
 """Early points of the learning curve lie a tenth of what was flown apart, for a logarithmic axis."""
 
 
-class NoiseFloor(BaseCallback):
-    """Lowers the policy's noise floor with the budget that is left."""
+class Annealing(BaseCallback):
+    """Lowers what the settings lower as the budget is spent, before every rollout."""
 
-    def __init__(self, settings: PPOSettings) -> None:
-        """Follow the settings' schedule."""
+    def __init__(self, settings: Settings) -> None:
+        """Follow the schedules of `settings`."""
         super().__init__()
         self.settings = settings
 
     def _on_rollout_start(self) -> None:
-        policy = self.model.policy
-        assert isinstance(policy, HoverPolicy)
-        policy.noise_floor = self.settings.noise_floor_at(1 - self.num_timesteps / self.settings.wingbeats)
+        self.settings.anneal(self.model, 1 - self.num_timesteps / self.settings.wingbeats)
 
     def _on_step(self) -> bool:
         return True

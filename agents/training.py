@@ -11,7 +11,7 @@ from stable_baselines3.common.callbacks import CallbackList
 from stable_baselines3.common.logger import configure
 
 from agents.actor_of import actor_of
-from agents.callbacks import Checkpoints, LearningCurve, ProgressBar
+from agents.callbacks import Annealing, Checkpoints, LearningCurve, ProgressBar
 from agents.curve_picture import draw_learning_curve
 from agents.policy_card import PolicyCard
 from agents.policy_file import save_policy
@@ -125,7 +125,7 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
     curve = LearningCurve(out, task, settings.wingbeats)
     checkpoints = Checkpoints(out, settings.wingbeats)
     bar = ProgressBar(curve, settings.wingbeats, shown=progress)
-    callbacks = CallbackList([*settings.callbacks(), curve, checkpoints, bar])
+    callbacks = CallbackList([Annealing(settings), curve, checkpoints, bar])
     started, interrupted = time.monotonic(), False
     try:
         model.learn(settings.wingbeats, callback=callbacks)

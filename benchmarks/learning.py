@@ -10,6 +10,7 @@ import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.logger import Logger
 
+from agents.callbacks import Annealing
 from agents.presets import DEFAULT_PRESET, PRESETS, Preset
 from agents.training import make_model
 from flapenv.tables import text_table
@@ -71,7 +72,7 @@ def learner(preset: Preset) -> PPO:
 def learn(model: PPO, preset: Preset) -> float:
     """Wingbeats a second of a whole run of the preset."""
     started = time.perf_counter()
-    model.learn(preset.settings.wingbeats, callback=preset.settings.callbacks())
+    model.learn(preset.settings.wingbeats, callback=Annealing(preset.settings))
     return model.num_timesteps / (time.perf_counter() - started)
 
 

@@ -3,28 +3,39 @@
 from collections.abc import Mapping
 from typing import Any
 
-from agents.presets import gradient, ppo
+from agents.presets import crossq, gradient, ppo, sac, td3, tqc
+from agents.presets.crossq import CrossQSettings
 from agents.presets.gradient import GradientSettings
 from agents.presets.ppo import PPOSettings
 from agents.presets.preset import Preset, Settings, setting_of
+from agents.presets.sac import SACSettings
+from agents.presets.td3 import TD3Settings
+from agents.presets.tqc import TQCSettings
 from flapenv.aero.checks import allowed, require_name
 
 __all__ = [
     "ALGORITHMS",
     "DEFAULT_PRESET",
     "PRESETS",
+    "CrossQSettings",
     "GradientSettings",
     "PPOSettings",
     "Preset",
+    "SACSettings",
     "Settings",
+    "TD3Settings",
+    "TQCSettings",
     "as_preset",
     "setting_of",
 ]
 
-PRESETS: dict[str, Preset] = {**ppo.PRESETS, **gradient.PRESETS}
+PRESETS: dict[str, Preset] = {
+    name: preset for learner in (ppo, sac, td3, tqc, crossq, gradient) for name, preset in learner.PRESETS.items()
+}
 """Every recipe by name, the default one first."""
 DEFAULT_PRESET = next(iter(PRESETS))
-ALGORITHMS: dict[str, Any] = {kind.algorithm: kind for kind in (PPOSettings, GradientSettings)}
+KINDS = (PPOSettings, SACSettings, TD3Settings, TQCSettings, CrossQSettings, GradientSettings)
+ALGORITHMS: dict[str, Any] = {kind.algorithm: kind for kind in KINDS}
 """The settings' record of every learner by its name."""
 DESCRIBED = ("task", "algorithm", "settings")
 

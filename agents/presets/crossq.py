@@ -1,13 +1,14 @@
 """Settings of CrossQ, and its presets."""
 
-from typing import Any
-
-from sb3_contrib import CrossQ
-from sb3_contrib.common.torch_layers import BatchRenorm
-from stable_baselines3.common.vec_env import VecEnv
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.off_policy import LEAST_LEFT, MaximumEntropySettings
+from agents.presets.preset import Preset
 from flapenv.aero.checks import record, require_count, require_scalar
+
+if TYPE_CHECKING:
+    from sb3_contrib import CrossQ
+    from stable_baselines3.common.vec_env import VecEnv
 
 
 @record
@@ -28,6 +29,8 @@ class CrossQSettings(MaximumEntropySettings):
         norm_momentum: of the running statistics at the start.
     """
 
+    algorithm: ClassVar[str] = "CrossQ"
+
     wingbeats: int = 200_000
     buffer: int = 30_000
     policy_delay: int = 3
@@ -47,13 +50,17 @@ class CrossQSettings(MaximumEntropySettings):
 
     def anneal(self, model: Any, left: float) -> None:
         """Set the price of entropy and the momentum."""
+        from sb3_contrib.common.torch_layers import BatchRenorm
+
         super().anneal(model, left)
         for layer in model.policy.modules():
             if isinstance(layer, BatchRenorm):
                 layer.momentum = self.norm_momentum_at(left)
 
-    def build(self, env: VecEnv, seed: int) -> CrossQ:
+    def build(self, env: "VecEnv", seed: int) -> "CrossQ":
         """The model with random weights on `env`."""
+        from sb3_contrib import CrossQ
+
         return CrossQ(
             "MlpPolicy",
             env,
@@ -63,4 +70,4 @@ class CrossQSettings(MaximumEntropySettings):
         )
 
 
-PRESETS: dict[str, CrossQSettings] = {"hover-crossq": CrossQSettings()}
+PRESETS = {"hover-crossq": Preset(task="hover", settings=CrossQSettings())}

@@ -1,12 +1,11 @@
 """Gradient ascent through the differentiable model: settings, and the presets that use them."""
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.preset import Preset
 from flapenv.aero.checks import record, require_count, require_scalar
 
 if TYPE_CHECKING:
-    from stable_baselines3.common.callbacks import BaseCallback
     from stable_baselines3.common.vec_env import VecEnv
 
     from agents.gradient_agent import GradientAgent
@@ -58,9 +57,8 @@ class GradientSettings:
             seed=seed,
         )
 
-    def callbacks(self) -> "list[BaseCallback]":
-        """None."""
-        return []
+    def anneal(self, model: Any, left: float) -> None:
+        """Nothing falls but the learning rate."""
 
 
 PRESETS = {

@@ -1,15 +1,13 @@
 """What the learners with a replay buffer share: budget, networks, and what falls while they learn."""
 
 from abc import ABC, abstractmethod
-from typing import Any
-
-from sb3_contrib import TQC, CrossQ
-from stable_baselines3 import SAC
-from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
-from stable_baselines3.common.vec_env import VecEnv
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from flapenv.aero.checks import record, require_count, require_scalar
+
+if TYPE_CHECKING:
+    from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+    from stable_baselines3.common.vec_env import VecEnv
 
 LEAST_LEFT = 0.003
 """The learning rate stops falling when this fraction of the budget is left."""
@@ -45,6 +43,8 @@ class OffPolicySettings(ABC):
         threads: of torch; networks this small are fastest on one.
     """
 
+    algorithm: ClassVar[str]
+
     wingbeats: int = 300_000
     rows: int = 64
     learning_starts: int = 2_000
@@ -64,7 +64,8 @@ class OffPolicySettings(ABC):
 
         Raises:
             TypeError: for a field of another kind.
-            ValueError: for a value outside its range, and for a buffer that cannot hold one batch of rows.
+            ValueError: for a value outside its range, for a buffer that cannot hold one batch of rows, and for a
+                budget that is spent before anything is learned.
         """
         for name in ("wingbeats", "rows", "batch", "buffer", "gradient_steps", "width", "critic_width", "critics"):
             require_count(name, getattr(self, name))
@@ -75,18 +76,19 @@ class OffPolicySettings(ABC):
         require_scalar("gamma", self.gamma, 0.0, 1.0)
         if self.buffer < self.rows:
             raise ValueError(f"buffer = {self.buffer} is not allowed; allowed: at least rows = {self.rows}")
+        if self.wingbeats <= self.learning_starts:
+            raise ValueError(
+                f"wingbeats = {self.wingbeats} is not allowed; allowed: more than learning_starts = "
+                f"{self.learning_starts}"
+            )
 
     @abstractmethod
-    def build(self, env: VecEnv, seed: int) -> OffPolicyAlgorithm:
+    def build(self, env: "VecEnv", seed: int) -> "OffPolicyAlgorithm":
         """The model with random weights on `env`."""
 
     @abstractmethod
     def anneal(self, model: Any, left: float) -> None:
         """Set on `model` what falls, with the fraction `left` of the budget still to go."""
-
-    def callbacks(self) -> list[BaseCallback]:
-        """What training needs beside the model."""
-        return [Annealing(self)]
 
     def learning_rate_at(self, left: float) -> float:
         """Learning rate with the fraction `left` of the budget still to go."""
@@ -148,21 +150,6 @@ class MaximumEntropySettings(OffPolicySettings):
         """Price of the entropy with the fraction `left` of the budget still to go."""
         return fallen(self.entropy, self.last_entropy, left, self.entropy_until)
 
-    def anneal(self, model: SAC | TQC | CrossQ, left: float) -> None:
+    def anneal(self, model: Any, left: float) -> None:
         """Set the price."""
         model.ent_coef_tensor.fill_(self.entropy_at(left))
-
-
-class Annealing(BaseCallback):
-    """Lowers what the settings lower, before every rollout."""
-
-    def __init__(self, settings: OffPolicySettings) -> None:
-        """Follow the schedules of `settings`."""
-        super().__init__()
-        self.settings = settings
-
-    def _on_rollout_start(self) -> None:
-        self.settings.anneal(self.model, 1 - self.num_timesteps / self.settings.wingbeats)
-
-    def _on_step(self) -> bool:
-        return True

@@ -1,13 +1,12 @@
 """Proximal policy optimisation: settings, and the presets that use them."""
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.preset import Preset
 from flapenv.aero.checks import record, require_count, require_scalar
 
 if TYPE_CHECKING:
     from stable_baselines3 import PPO
-    from stable_baselines3.common.callbacks import BaseCallback
     from stable_baselines3.common.vec_env import VecEnv
 
 
@@ -114,11 +113,9 @@ class PPOSettings:
             device="cpu",
         )
 
-    def callbacks(self) -> "list[BaseCallback]":
-        """The noise floor falls."""
-        from agents.callbacks import NoiseFloor
-
-        return [NoiseFloor(self)]
+    def anneal(self, model: Any, left: float) -> None:
+        """Set the noise floor."""
+        model.policy.noise_floor = self.noise_floor_at(left)
 
 
 PRESETS = {"hover-ppo": Preset(task="hover", settings=PPOSettings())}

@@ -12,7 +12,6 @@ from flapenv.aero.checks import allowed, record, require_name
 
 if TYPE_CHECKING:
     from stable_baselines3.common.base_class import BaseAlgorithm
-    from stable_baselines3.common.callbacks import BaseCallback
     from stable_baselines3.common.vec_env import VecEnv
 
 
@@ -33,8 +32,8 @@ class Settings(Protocol):
     def build(self, env: "VecEnv", seed: int) -> "BaseAlgorithm":
         """The learner with random weights."""
 
-    def callbacks(self) -> "list[BaseCallback]":
-        """What it changes as the budget is spent."""
+    def anneal(self, model: Any, left: float) -> None:
+        """Set on `model` what falls, before a rollout, with the fraction `left` of the budget still to go."""
 
 
 @record

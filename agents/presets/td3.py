@@ -1,28 +1,14 @@
 """Settings of TD3, and its presets."""
 
-from typing import Any
-
-import numpy as np
-from stable_baselines3 import TD3
-from stable_baselines3.common.noise import ActionNoise, NormalActionNoise, VectorizedActionNoise
-from stable_baselines3.common.vec_env import VecEnv
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.off_policy import OffPolicySettings, fallen
+from agents.presets.preset import Preset
 from flapenv.aero.checks import record, require_count, require_scalar
 
-
-class FallingNoise(ActionNoise):
-    """White noise whose size is set from outside; drawn as `NormalActionNoise` draws, from what the model seeds."""
-
-    def __init__(self, size: float, axes: int) -> None:
-        """Noise of standard deviation `size` on each of `axes` axes."""
-        super().__init__()
-        self.size = size
-        self._unit = NormalActionNoise(np.zeros(axes), np.ones(axes))
-
-    def __call__(self) -> np.ndarray:
-        """One draw, shape (axes,)."""
-        return self.size * self._unit()
+if TYPE_CHECKING:
+    from stable_baselines3 import TD3
+    from stable_baselines3.common.vec_env import VecEnv
 
 
 @record
@@ -39,6 +25,8 @@ class TD3Settings(OffPolicySettings):
         last_noise: at the end; it falls geometrically.
         noise_until: fraction of the budget at which the last noise is reached.
     """
+
+    algorithm: ClassVar[str] = "TD3"
 
     wingbeats: int = 400_000
     learning_rate_power: float = 2.0
@@ -61,13 +49,19 @@ class TD3Settings(OffPolicySettings):
 
     def anneal(self, model: Any, left: float) -> None:
         """Set the noise of every row."""
+        from stable_baselines3.common.noise import VectorizedActionNoise
+
         noise = model.action_noise  # one a row, but where there is one row only
         rows: Any = noise.noises if isinstance(noise, VectorizedActionNoise) else [noise]
         for row in rows:
             row.size = self.noise_at(left)
 
-    def build(self, env: VecEnv, seed: int) -> TD3:
+    def build(self, env: "VecEnv", seed: int) -> "TD3":
         """The model with random weights on `env`."""
+        from stable_baselines3 import TD3
+
+        from agents.falling_noise import FallingNoise
+
         shape = env.action_space.shape
         assert shape is not None
         return TD3(
@@ -79,4 +73,4 @@ class TD3Settings(OffPolicySettings):
         )
 
 
-PRESETS: dict[str, TD3Settings] = {"hover-td3": TD3Settings()}
+PRESETS = {"hover-td3": Preset(task="hover", settings=TD3Settings())}

@@ -1,10 +1,14 @@
 """Settings of TQC, and its presets."""
 
-from sb3_contrib import TQC
-from stable_baselines3.common.vec_env import VecEnv
+from typing import TYPE_CHECKING, ClassVar
 
 from agents.presets.off_policy import MaximumEntropySettings
+from agents.presets.preset import Preset
 from flapenv.aero.checks import record, require_count
+
+if TYPE_CHECKING:
+    from sb3_contrib import TQC
+    from stable_baselines3.common.vec_env import VecEnv
 
 
 @record
@@ -19,6 +23,8 @@ class TQCSettings(MaximumEntropySettings):
         dropped: largest quantiles of each critic that do not count, against overestimation.
     """
 
+    algorithm: ClassVar[str] = "TQC"
+
     wingbeats: int = 400_000
     quantiles: int = 5
     dropped: int = 0
@@ -32,8 +38,10 @@ class TQCSettings(MaximumEntropySettings):
                 f"dropped = {self.dropped} is not allowed; allowed: fewer than quantiles = {self.quantiles}"
             )
 
-    def build(self, env: VecEnv, seed: int) -> TQC:
+    def build(self, env: "VecEnv", seed: int) -> "TQC":
         """The model with random weights on `env`."""
+        from sb3_contrib import TQC
+
         return TQC(
             "MlpPolicy",
             env,
@@ -43,4 +51,4 @@ class TQCSettings(MaximumEntropySettings):
         )
 
 
-PRESETS: dict[str, TQCSettings] = {"hover-tqc": TQCSettings()}
+PRESETS = {"hover-tqc": Preset(task="hover", settings=TQCSettings())}

@@ -117,7 +117,17 @@ class RandomWingsTask:
 
 def wings_table(flown: dict[str, WingFlights]) -> str:
     """Gaps, weight support and frequency errors, one line a split."""
-    header = ("random wings", "number", "mean gap", "median", "95 %", "worst", "rms error of f", "of weight support", "least")
+    header = (
+        "random wings",
+        "number",
+        "mean gap",
+        "median",
+        "95 %",
+        "worst",
+        "rms error of f",
+        "of weight support",
+        "least",
+    )
     units = ("", "", "%", "%", "%", "%", "%", "%", "")
     rows: list[tuple[str, ...]] = [header, units]
     for split, flights in flown.items():

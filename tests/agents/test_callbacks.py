@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from stable_baselines3 import PPO
 
-from agents.callbacks import CHECKPOINTS, Checkpoints, NoiseFloor
+from agents.callbacks import CHECKPOINTS, Annealing, Checkpoints
 from agents.presets import PPOSettings, Preset
 from agents.run_folder import POLICY
 from agents.training import TrainingConfig, make_model, train
@@ -19,7 +19,7 @@ def test_the_noise_floor_reaches_the_policy_as_the_budget_is_spent() -> None:
     seen = []
     original = model.train
     model.train = lambda: (seen.append(model.policy.noise_floor), original())[1]
-    model.learn(SMALL.wingbeats, callback=NoiseFloor(SMALL))
+    model.learn(SMALL.wingbeats, callback=Annealing(SMALL))
     spent = [i * SMALL.rows / SMALL.wingbeats for i in range(8)]
     assert seen == pytest.approx([SMALL.noise_floor_at(1 - done) for done in spent])
     assert seen[0] == -2
@@ -49,7 +49,7 @@ def test_the_learning_curve_watches_and_changes_nothing(tmp_path: Path) -> None:
     config = TrainingConfig(preset=PRESET)
     train(config, tmp_path / "watched", progress=False)
     alone = make_model(PRESET, PRESET.make_task(), config.seed)
-    alone.learn(SMALL.wingbeats, callback=NoiseFloor(SMALL))
+    alone.learn(SMALL.wingbeats, callback=Annealing(SMALL))
     watched = PPO.load(tmp_path / "watched" / POLICY, device="cpu")
     for one, other in zip(alone.policy.parameters(), watched.policy.parameters(), strict=True):
         assert (one == other).all()

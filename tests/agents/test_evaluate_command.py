@@ -71,7 +71,7 @@ def test_a_policy_for_every_wing_flies_named_insects_and_tells_its_costs(
     assert "hawkmoth" not in out
     code, out, _ = evaluated(capsys, wings, "--costs")
     assert code == 0
-    for word in ("outside", "batched optimum", "multi-start SLSQP", "rms error of f", "such searches"):
+    for word in ("outside", "batched optimum", "multi-start SLSQP", "rms error", "such searches"):
         assert word in out
 
 

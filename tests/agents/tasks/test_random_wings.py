@@ -81,7 +81,7 @@ def test_the_verdict_is_plain_numbers_and_tells_all_three_sets(monkeypatch: pyte
     assert verdict.worst is not None
     assert verdict.mean < verdict.worst
     assert set(verdict.results["insects"]) >= {"hawkmoth", "ladybird"}
-    for word in ("test", "outside", "hawkmoth", "rms error of f"):
+    for word in ("test", "outside", "hawkmoth", "rms error"):
         assert word in verdict.text
     flown = {"test": task.pool("test", 300).fly(Middle())}
     assert f"{100 * verdict.mean:.3f}" in wings_table(flown)
