@@ -1,13 +1,17 @@
 """Proximal policy optimisation: settings, and the presets that use them."""
 
+import math
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_count, require_scalar
+from flapenv.aero.checks import record, require_count, require_name, require_scalar
 
 if TYPE_CHECKING:
     from stable_baselines3 import PPO
     from stable_baselines3.common.vec_env import VecEnv
+
+ACTIVATIONS = {"relu": "ReLU", "silu": "SiLU", "tanh": "Tanh"}
+"""By their names in torch."""
 
 
 @record
@@ -20,12 +24,20 @@ class PPOSettings:
         steps: wingbeats of every row between two updates.
         minibatch: rows of a gradient step.
         epochs: passes over the rows, cut short where the policy has moved by `target_kl`.
-        learning_rate: at the start; falls towards zero with `learning_rate_power` of the budget that is left.
+        learning_rate: at the start. It falls by `learning_rate_ratio` over the budget, evenly on a log scale as the
+            noise does, because a step that suits one noise is too long for a smaller one; and towards zero with
+            `learning_rate_power` of the budget that is left.
+        learning_rate_ratio: of last to first learning rate, before the power; 1 leaves it to the power.
         learning_rate_power: 1 is linear, more spends longer on small steps.
         clip_range: of the probability ratio.
         target_kl: the update stops at 1.5 times this divergence. It keeps early leaps from landing where the
             frequency is clipped and the reward is flat.
-        width: neurons of each of the two hidden layers of actor and critic.
+        gradient_norm: longer gradients are cut to it; None cuts nothing. The actor's gradient grows as the noise falls:
+            cut together with the critic's, it stops the critic.
+        width: neurons of each hidden layer of actor and critic.
+        layers: hidden layers of each.
+        activation: "relu", "silu" or "tanh". ReLU tells wings of nearly the same features apart much sooner; smooth
+            ones interpolate better between many wings.
         log_std: log standard deviation of the actions at the start, in units of the cube.
         noise_floor: log standard deviation that the noise cannot fall below, at the start.
         last_noise_floor: the same at the end; it falls linearly in between.
@@ -39,20 +51,24 @@ class PPOSettings:
 
     algorithm: ClassVar[str] = "PPO"
 
-    wingbeats: int = 4_000_000
+    wingbeats: int = 1_500_000
     rows: int = 2_048
     steps: int = 1
     minibatch: int = 512
     epochs: int = 8
     learning_rate: float = 3e-3
-    learning_rate_power: float = 3.0
+    learning_rate_ratio: float = 0.005
+    learning_rate_power: float = 1.0
     clip_range: float = 0.2
     target_kl: float = 0.2
+    gradient_norm: float | None = None
     width: int = 64
+    layers: int = 2
+    activation: str = "relu"
     log_std: float = -0.5
-    noise_floor: float = -4.0
-    last_noise_floor: float = -6.5
-    floor_until: float = 0.8
+    noise_floor: float = -3.5
+    last_noise_floor: float = -8.5
+    floor_until: float = 0.9
     gamma: float = 1.0
     gae_lambda: float = 1.0
     reward_scale: float = 1.0
@@ -61,10 +77,14 @@ class PPOSettings:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        for name in ("wingbeats", "rows", "steps", "minibatch", "epochs", "width", "threads"):
+        for name in ("wingbeats", "rows", "steps", "minibatch", "epochs", "width", "layers", "threads"):
             require_count(name, getattr(self, name))
         for name in ("learning_rate", "learning_rate_power", "clip_range", "target_kl", "reward_scale"):
             require_scalar(name, getattr(self, name), 0.0, open_low=True)
+        require_scalar("learning_rate_ratio", self.learning_rate_ratio, 0.0, 1.0, open_low=True)
+        require_name("activation", self.activation, ACTIVATIONS)
+        if self.gradient_norm is not None:
+            require_scalar("gradient_norm", self.gradient_norm, 0.0, open_low=True)
         for name in ("log_std", "noise_floor", "last_noise_floor"):
             require_scalar(name, getattr(self, name), -20.0, 0.0)
         require_scalar("floor_until", self.floor_until, 0.0, 1.0, open_low=True)
@@ -80,7 +100,8 @@ class PPOSettings:
         before = min(
             1.0, max(left, 0.0) + self.rows * self.steps / self.wingbeats
         )  # even the last update learns a little
-        return float(self.learning_rate * before**self.learning_rate_power)
+        fall = self.learning_rate_ratio ** (1 - before) * before**self.learning_rate_power
+        return float(self.learning_rate * fall)
 
     def noise_floor_at(self, left: float) -> float:
         """Floor of the log standard deviation with the fraction `left` of the budget still to go."""
@@ -90,6 +111,7 @@ class PPOSettings:
     def build(self, env: "VecEnv", seed: int) -> "PPO":
         """The learner with random weights."""
         from stable_baselines3 import PPO
+        from torch import nn
 
         from agents.policy import HoverPolicy
 
@@ -104,8 +126,10 @@ class PPOSettings:
             gae_lambda=self.gae_lambda,
             clip_range=self.clip_range,
             target_kl=self.target_kl,
+            max_grad_norm=math.inf if self.gradient_norm is None else self.gradient_norm,
             policy_kwargs={
-                "net_arch": [self.width, self.width],
+                "net_arch": [self.width] * self.layers,
+                "activation_fn": getattr(nn, ACTIVATIONS[self.activation]),
                 "log_std_init": self.log_std,
                 "first_mean": self.first_mean,
             },

@@ -124,11 +124,11 @@ def wings_table(flown: dict[str, WingFlights]) -> str:
         "median",
         "95 %",
         "worst",
-        "rms error of f",
-        "of weight support",
-        "least",
+        "rms error:",
+        "weight",
+        "least weight",
     )
-    units = ("", "", "%", "%", "%", "%", "%", "%", "")
+    units = ("", "", "%", "%", "%", "%", "f %", "support %", "support")
     rows: list[tuple[str, ...]] = [header, units]
     for split, flights in flown.items():
         row = flights.to_dict()

@@ -57,7 +57,7 @@ def test_an_unknown_task_is_named() -> None:
     ("text", "pair"),
     [
         ("rows=3", ("rows", 3)),
-        ("first_mean=[0, 1]", ("first_mean", [0, 1])),
+        ("mean=[0, 1]", ("mean", [0, 1])),
         ("activation=relu", ("activation", "relu")),
     ],
 )
