@@ -61,6 +61,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--problem", metavar="NAME", help=f"of {', '.join(PROBLEMS)} (default the first); of tasks that have one"
     )
+    made.add_argument("--leave-out", metavar="NAME", help="an insect whose like is not trained on; of random wings")
     made.add_argument(
         "--wingbeats", type=int, metavar="N", help=f"training budget (default the preset's; {budget:,} for the default)"
     )
@@ -131,7 +132,7 @@ def config_of(options: argparse.Namespace, command: str) -> Any:
     if options.config is not None:
         name, seed, chosen = read_config(options.config)
     preset = as_preset(chosen)
-    own = {"insects": options.insects, "problem": options.problem}
+    own = {"insects": options.insects, "problem": options.problem, "leave_out": options.leave_out}
     task = {key: value for key, value in own.items() if value is not None}
     settings = dict(setting_of(text) for text in options.settings)
     if options.wingbeats is not None:
