@@ -4,6 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import yaml
 from sb3_contrib import TQC, CrossQ
@@ -68,6 +69,17 @@ def test_each_learns_and_ends_with_what_its_schedule_ends_with(name: str) -> Non
         assert model.action_noise.noises[0].size == pytest.approx(settings.noise_at(left))
     else:
         assert model.ent_coef_tensor.item() == pytest.approx(settings.entropy_at(left))
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_saved_policy_flies_as_before(name: str, tmp_path: Path) -> None:
+    env = hover(8)
+    model = replace(PRESETS[name], rows=8).build(env, seed=0)
+    model.save(tmp_path / "policy.zip")
+    again = LEARNERS[name.split("-")[1]].load(tmp_path / "policy.zip", device="cpu")
+    observations = env.reset()
+    old, new = (one.predict(observations, deterministic=True)[0] for one in (model, again))
+    np.testing.assert_array_equal(old, new)
 
 
 def test_a_single_row_is_flown_too() -> None:
