@@ -24,7 +24,7 @@ class CrossQSettings(MaximumEntropySettings):
         wingbeats: training budget, one wingbeat a row.
         buffer: wingbeats kept.
         policy_delay: gradient steps of the critic for one of the actor.
-        norm_warmup: gradient steps before running statistics replace those of the batch.
+        norm_warmup: gradient steps of a network before its running statistics replace those of the batch.
         norm_momentum: of the running statistics at the start.
     """
 
