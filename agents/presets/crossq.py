@@ -23,17 +23,19 @@ class CrossQSettings(MaximumEntropySettings):
 
     Attributes:
         wingbeats: training budget, one wingbeat a row.
-        buffer: wingbeats kept.
+        buffer: wingbeats kept, the latest.
+        learning_rate_power: the learning rate falls with this power of the budget that is left.
         policy_delay: gradient steps of the critic for one of the actor.
-        norm_warmup: gradient steps before running statistics replace those of the batch.
+        norm_warmup: gradient steps of a network before its running statistics replace those of the batch.
         norm_momentum: of the running statistics at the start.
     """
 
     algorithm: ClassVar[str] = "CrossQ"
 
-    wingbeats: int = 200_000
+    wingbeats: int = 240_000
     buffer: int = 30_000
-    policy_delay: int = 3
+    learning_rate_power: float = 2.0
+    policy_delay: int = 2
     norm_warmup: int = 2_000
     norm_momentum: float = 0.01
 

@@ -31,14 +31,13 @@ class OffPolicySettings(ABC):
         rows: wingbeats flown at a time.
         learning_starts: wingbeats of random actions before the first gradient step.
         batch: wingbeats of a gradient step.
-        buffer: wingbeats kept; fewer than the budget, and the critic forgets the far side of the box for a finer fit
-            where the policy is.
+        buffer: wingbeats kept, the latest.
         gradient_steps: after every `rows` wingbeats.
         learning_rate: of actor and critic at the start.
         learning_rate_power: it falls with this power of the budget that is left; 1 is linear.
         width: neurons of each of the actor's two hidden layers.
         critic_width: the same of each critic.
-        critics: how many; the least of their values counts.
+        critics: how many; two or more guard against overestimation where values are bootstrapped.
         gamma: discount factor, for tasks of many wingbeats.
         threads: of torch; networks this small are fastest on one.
     """
@@ -127,7 +126,7 @@ class MaximumEntropySettings(OffPolicySettings):
     At the kink of the penalty the policy stands off by about its noise, and off a face of the box by the price over the
     reward's slope there, so the price must end low. And it must start high: a wing that flaps narrow and fast, where
     the frequency is clipped and the reward is flat, has no way back once its noise has died. A price that is learned
-    for a fixed entropy ("auto") does neither.
+    for a fixed entropy ("auto") keeps the noise instead.
 
     Attributes:
         entropy: price of the entropy at the start, in units of the reward a nat.

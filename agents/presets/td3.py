@@ -19,8 +19,8 @@ class TD3Settings(OffPolicySettings):
         wingbeats: training budget, one wingbeat a row.
         learning_rate_power: the learning rate falls with this power of the budget that is left. The policy has no noise
             of its own and hovers as exactly as the critic places the kink, which the small last steps decide.
-        policy_delay: gradient steps of the critic for one of the actor. A slow actor does not run into a wrong face of
-            the box, where its tanh saturates and it stays, before the critic is right.
+        policy_delay: gradient steps of the critic for one of the actor. A slow actor and much noise at first keep it
+            from running into a wrong face of the box, where tanh saturates and it stays, before the critic is right.
         noise: standard deviation of the actions flown at the start, in units of the cube.
         last_noise: at the end; it falls geometrically.
         noise_until: fraction of the budget at which the last noise is reached.

@@ -1,8 +1,10 @@
 """Learners with a replay buffer: their settings, what falls, and that each learns."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from sb3_contrib.common.torch_layers import BatchRenorm
 
@@ -61,6 +63,17 @@ def test_each_learns_and_ends_with_what_its_schedule_ends_with(name: str) -> Non
         assert model.action_noise.noises[0].size == pytest.approx(settings.noise_at(left))
     else:
         assert model.ent_coef_tensor.item() == pytest.approx(settings.entropy_at(left))
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_a_saved_policy_flies_as_before(name: str, tmp_path: Path) -> None:
+    env = hover(8)
+    model = replace(PRESETS[name].settings, rows=8).build(env, seed=0)
+    model.save(tmp_path / "policy.zip")
+    again = type(model).load(tmp_path / "policy.zip", device="cpu")
+    observations = env.reset()
+    old, new = (one.predict(observations, deterministic=True)[0] for one in (model, again))
+    np.testing.assert_array_equal(old, new)
 
 
 def test_a_single_row_is_flown_too() -> None:
