@@ -37,11 +37,12 @@ def train_without(names: Sequence[str], preset: str, seed: int, root: Path, jobs
         What went wrong, by name.
 
     Raises:
+        ValueError: for a run that is there with another preset or seed.
         OSError: if the folder cannot be written, or is in use.
     """
     root.mkdir(parents=True, exist_ok=True)
     failed: dict[str, str] = {}
-    todo = [name for name in names if not (root / name / RESULTS).is_file()]
+    todo = [name for name in names if not _is_there(root / name, preset, seed)]
     with locked(root) as lock, tqdm(total=len(todo), unit="run", file=sys.stderr) as bar:
 
         def ended(over: Command, code: int) -> None:
@@ -63,6 +64,18 @@ def train_without(names: Sequence[str], preset: str, seed: int, root: Path, jobs
         ):
             raise KeyboardInterrupt
     return failed
+
+
+def _is_there(folder: Path, preset: str, seed: int) -> bool:
+    """Whether a run has ended, with the same preset and seed."""
+    if not (folder / RESULTS).is_file():
+        return False
+    found = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
+    if (found["preset"], found["seed"]) != (preset, seed):
+        raise ValueError(
+            f"{folder} was made with preset {found['preset']}, seed {found['seed']}; allowed: the same, or another --root"
+        )
+    return True
 
 
 def left_out_table(root: Path, names: Sequence[str]) -> str:

@@ -142,4 +142,9 @@ class PPOSettings:
         model.policy.noise_floor = self.noise_floor_at(left)
 
 
-PRESETS = {"hover-ppo": Preset(task="hover", settings=PPOSettings())}
+PRESETS = {
+    "hover-ppo": Preset(task="hover", settings=PPOSettings()),
+    "random-wings-ppo": Preset(
+        task="random-wings", settings=PPOSettings(layers=3, activation="silu", last_noise_floor=-8.0)
+    ),
+}
