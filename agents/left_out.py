@@ -73,7 +73,8 @@ def _is_there(folder: Path, preset: str, seed: int) -> bool:
     found = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
     if (found["preset"], found["seed"]) != (preset, seed):
         raise ValueError(
-            f"{folder} was made with preset {found['preset']}, seed {found['seed']}; allowed: the same, or another --root"
+            f"{folder} was made with preset {found['preset']}, seed {found['seed']}; allowed: the same, or another "
+            "--root"
         )
     return True
 
