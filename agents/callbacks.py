@@ -60,7 +60,7 @@ class LearningCurve(BaseCallback):
         self._rewards.append(float(np.mean(self.locals["rewards"])))
         return True
 
-    def _on_rollout_end(self) -> None:
+    def _on_rollout_start(self) -> None:  # what has been flown has been learned from
         if self.num_timesteps < self.next:
             return
         step = min(self.every, max(self.num_timesteps * FINEST, self.every / CURVE_POINTS))

@@ -51,13 +51,13 @@ class PPOSettings:
 
     algorithm: ClassVar[str] = "PPO"
 
-    wingbeats: int = 1_500_000
+    wingbeats: int = 2_000_000
     rows: int = 2_048
     steps: int = 1
     minibatch: int = 512
     epochs: int = 8
     learning_rate: float = 3e-3
-    learning_rate_ratio: float = 0.005
+    learning_rate_ratio: float = 0.02
     learning_rate_power: float = 1.0
     clip_range: float = 0.2
     target_kl: float = 0.2
@@ -67,8 +67,8 @@ class PPOSettings:
     activation: str = "relu"
     log_std: float = -0.5
     noise_floor: float = -3.5
-    last_noise_floor: float = -8.5
-    floor_until: float = 0.9
+    last_noise_floor: float = -8.0
+    floor_until: float = 1.0
     gamma: float = 1.0
     gae_lambda: float = 1.0
     reward_scale: float = 1.0
@@ -144,7 +144,23 @@ class PPOSettings:
 
 PRESETS = {
     "hover-ppo": Preset(task="hover", settings=PPOSettings()),
+    "hover-ppo-50k": Preset(
+        task="hover",
+        settings=PPOSettings(
+            wingbeats=50_000,
+            rows=256,
+            minibatch=64,
+            epochs=10,
+            learning_rate_ratio=0.05,
+            noise_floor=-2.0,
+            last_noise_floor=-6.0,
+            floor_until=0.9,
+        ),
+    ),
     "random-wings-ppo": Preset(
-        task="random-wings", settings=PPOSettings(layers=3, activation="silu", last_noise_floor=-8.0)
+        task="random-wings",
+        settings=PPOSettings(
+            wingbeats=3_000_000, layers=3, activation="silu", learning_rate_ratio=0.005, floor_until=0.9
+        ),
     ),
 }

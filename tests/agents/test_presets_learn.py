@@ -11,6 +11,7 @@ from agents.presets import DEFAULT_PRESET, PRESETS
 from agents.training import make_model
 
 SHARES = {
+    "hover-ppo-50k": 1.0,
     "hover-sac": 0.2,
     "hover-sac-50k": 0.3,
     "hover-td3": 0.2,
