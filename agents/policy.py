@@ -1,6 +1,6 @@
 """A Gaussian policy whose mean stays near the box and whose noise is its own for every wing."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import torch
@@ -36,10 +36,23 @@ class HoverPolicy(ActorCriticPolicy):
         observation_space: spaces.Space,
         action_space: spaces.Box,
         lr_schedule: Schedule,
+        first_mean: Sequence[float] | None = None,
         **arguments: Any,
     ) -> None:
-        """Build the networks; arguments as `ActorCriticPolicy`'s."""
+        """Build the networks.
+
+        Args:
+            observation_space: as `ActorCriticPolicy`'s, like the rest.
+            action_space: the cube.
+            lr_schedule: learning rate by the share of the training that is left.
+            first_mean: mean action before training, one number an axis, each within the cube; its middle where None.
+            **arguments: of `ActorCriticPolicy`.
+
+        Raises:
+            ValueError: for a first mean of another length or outside the cube.
+        """
         self.noise_floor = LEAST_FLOOR
+        self.first_mean = None if first_mean is None else _checked_mean(first_mean, action_space)
         super().__init__(observation_space, action_space, lr_schedule, **arguments)
 
     def _build(self, lr_schedule: Schedule) -> None:
@@ -48,6 +61,10 @@ class HoverPolicy(ActorCriticPolicy):
         self.noise_net = nn.Linear(self.mlp_extractor.latent_dim_pi, self.log_std.shape[0])
         nn.init.zeros_(self.noise_net.weight)
         nn.init.constant_(self.noise_net.bias, self.log_std_init)
+        if self.first_mean is not None:
+            assert isinstance(self.action_net, nn.Linear)
+            with torch.no_grad():
+                self.action_net.bias.copy_(torch.atanh(torch.tensor(self.first_mean) / MEAN_REACH))
         self.action_net = nn.Sequential(self.action_net, _Reach())
         trained = [parameter for parameter in self.parameters() if parameter.requires_grad]
         make_optimizer: Callable[..., torch.optim.Optimizer] = self.optimizer_class
@@ -57,3 +74,11 @@ class HoverPolicy(ActorCriticPolicy):
         assert isinstance(self.action_dist, DiagGaussianDistribution)
         noise = torch.clamp(self.noise_net(latent_pi), self.noise_floor, 0.0)
         return self.action_dist.proba_distribution(self.action_net(latent_pi), noise)
+
+
+def _checked_mean(first_mean: Sequence[float], action_space: spaces.Box) -> tuple[float, ...]:
+    """The mean as plain numbers, of the actions' length and within the cube."""
+    checked = tuple(float(value) for value in first_mean)
+    if (len(checked),) != action_space.shape or not all(-1 <= value <= 1 for value in checked):
+        raise ValueError(f"first_mean = {checked} is not allowed; allowed: {action_space.shape} numbers from -1 to 1")
+    return checked
