@@ -54,3 +54,17 @@ def test_everything_that_is_trained_is_in_the_optimiser_once(policy: HoverPolicy
     trained = [id(parameter) for parameter in policy.parameters() if parameter.requires_grad]
     assert sorted(held) == sorted(trained)
     assert id(policy.noise_net.weight) in held
+
+
+def test_the_mean_begins_where_it_is_told_to() -> None:
+    first = (0.4, 1.0, -1.0)
+    policy = HoverPolicy(*SPACES, lambda _: 1e-3, first_mean=first, net_arch=[16, 16])
+    observations = np.random.default_rng(0).normal(size=(64, 6)).astype(np.float32)
+    actions, _ = policy.predict(observations, deterministic=True)
+    np.testing.assert_allclose(actions, np.tile(first, (64, 1)), atol=0.05)
+
+
+@pytest.mark.parametrize("wrong", [(0.4, 1.0), (0.4, 1.0, 1.2), (0.0, 0.0, float("nan"))])
+def test_a_first_mean_outside_the_cube_is_refused(wrong: tuple[float, ...]) -> None:
+    with pytest.raises(ValueError, match="first_mean"):
+        HoverPolicy(*SPACES, lambda _: 1e-3, first_mean=wrong)
