@@ -66,11 +66,7 @@ class HoverPolicy(ActorCriticPolicy):
             assert isinstance(self.action_net, nn.Linear)
             with torch.no_grad():
                 self.action_net.bias.copy_(torch.atanh(torch.tensor(self.first_mean) / MEAN_REACH))
-<<<<<<< HEAD
         self.action_net = nn.Sequential(self.action_net, Reach())
-=======
-        self.action_net = nn.Sequential(self.action_net, _Reach())
->>>>>>> tasks
         trained = [parameter for parameter in self.parameters() if parameter.requires_grad]
         make_optimizer: Callable[..., torch.optim.Optimizer] = self.optimizer_class
         self.optimizer = make_optimizer(trained, lr=lr_schedule(1), **self.optimizer_kwargs)
