@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.predictor import Predictor
+from agents.tasks.described import described
 from agents.tasks.held_out import HELD_OUT_SEED, mean_with_interval, noise_free
 from agents.tasks.task import Verdict
 from flapenv.adapt.tuning import NAMES
@@ -135,7 +136,7 @@ class HoverAdaptTask:
 
     def to_dict(self) -> dict[str, Any]:
         """The insects."""
-        return {"insects": [insect.to_dict() for insect in self._flyers]}
+        return {"insects": [described(insect) for insect in self._flyers]}
 
     @property
     def _flyers(self) -> tuple[Insect, ...]:

@@ -10,6 +10,7 @@ from agents.heave_flights import EPISODES, Flights, Policy, compare_with_front, 
 from agents.lqg import RATIOS, fly_every
 from agents.lqg_controller import Lqg, lqg
 from agents.predictor import Predictor
+from agents.tasks.described import described
 from agents.tasks.held_out import HELD_OUT_SEED, mean_with_interval, noise_free
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
@@ -106,7 +107,7 @@ class HeaveTask:
 
     def to_dict(self) -> dict[str, Any]:
         """The insects."""
-        return {"insects": [insect.to_dict() for insect in self._flyers]}
+        return {"insects": [described(insect) for insect in self._flyers]}
 
     @property
     def _flyers(self) -> tuple[Insect, ...]:

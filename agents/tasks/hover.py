@@ -8,10 +8,11 @@ import numpy as np
 
 from agents.comparison import Comparison, comparison_table, mean_gap, worst_gap
 from agents.predictor import Predictor
+from agents.tasks.described import described
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
-from flapenv.insects import INSECTS, Insect, as_insect, load_insect
+from flapenv.insects import INSECTS, as_insect
 from flapenv.problem import as_problem
 
 if TYPE_CHECKING:
@@ -85,13 +86,3 @@ class HoverTask:
             TypeError: for an insect that no file can hold.
         """
         return {"insects": [described(insect) for insect in self.insects], "problem": self.problem.to_dict()}
-
-
-def described(insect: Insect) -> str | dict[str, Any]:
-    """An insect for a file: its name where it is one of `INSECTS`, else all its numbers.
-
-    Raises:
-        TypeError: for an insect that no file can hold.
-    """
-    named = insect.name in INSECTS and insect == load_insect(insect.name)
-    return insect.name if named else insect.to_dict()

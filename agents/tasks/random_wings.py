@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.comparison import Comparison, comparison_table
 from agents.predictor import Predictor
-from agents.tasks.hover import described
+from agents.tasks.described import described
 from agents.tasks.task import Verdict
 from agents.tasks.wing_flights import WingFlights, WingPool
 from flapenv.aero.checks import record, require_count

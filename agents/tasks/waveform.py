@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.predictor import Predictor
+from agents.tasks.described import described
 from agents.tasks.held_out import HELD_OUT_SEED, noise_free
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record, require_count
@@ -127,7 +128,7 @@ class WaveformTask:
         """Insects, problem and knots."""
         problem: HoverProblem = self.problem
         return {
-            "insects": [insect.to_dict() for insect in self._flyers],
+            "insects": [described(insect) for insect in self._flyers],
             "problem": problem.to_dict(),
             "knots": self.knots,
         }
