@@ -62,7 +62,7 @@ class Actor:
             _require_layer(f"layers.{number}", weight, bias, inputs)
             inputs = bias.shape
         for field in ("weights", "biases"):
-            object.__setattr__(self, field, tuple(_kept(array) for array in getattr(self, field)))
+            object.__setattr__(self, field, tuple(kept(array) for array in getattr(self, field)))
 
     @property
     def observation_size(self) -> int:
@@ -73,6 +73,11 @@ class Actor:
     def action_size(self) -> int:
         """How many numbers an action has."""
         return len(self.weights[-1])
+
+    @property
+    def memory(self) -> int:
+        """How many numbers it remembers: none."""
+        return 0
 
     @property
     def widths(self) -> tuple[int, ...]:
@@ -131,19 +136,29 @@ class Actor:
 def _require_layer(name: str, weight: Any, bias: Any, inputs: tuple[int, ...]) -> None:
     """Refuse what is not finite float32 of shapes (outputs, *inputs) and (outputs,)."""
     for part, array in (("weight", weight), ("bias", bias)):
-        if not isinstance(array, np.ndarray) or array.dtype != np.float32:
-            kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
-            raise TypeError(f"{name}.{part} is of type {kind}; allowed: an array of float32")
-        bad = array[~np.isfinite(array)]
-        if bad.size:
-            raise ValueError(f"{name}.{part} holds {bad.size} numbers that are not finite, the first {bad[0]}")
+        require_numbers(f"{name}.{part}", array)
     if weight.ndim != 2 or weight.shape[1:] != inputs or not weight.size:
         raise ValueError(f"{name}.weight has shape {weight.shape}; allowed: (outputs, {', '.join(map(str, inputs))})")
     if bias.shape != weight.shape[:1]:
         raise ValueError(f"{name}.bias has shape {bias.shape}; allowed: {weight.shape[:1]}")
 
 
-def _kept(array: np.ndarray) -> np.ndarray:
+def require_numbers(name: str, array: Any) -> None:
+    """Refuse what is not an array of finite float32.
+
+    Raises:
+        TypeError: for another type.
+        ValueError: for NaN or inf.
+    """
+    if not isinstance(array, np.ndarray) or array.dtype != np.float32:
+        kind = array.dtype if isinstance(array, np.ndarray) else type(array).__name__
+        raise TypeError(f"{name} is of type {kind}; allowed: an array of float32")
+    bad = array[~np.isfinite(array)]
+    if bad.size:
+        raise ValueError(f"{name} holds {bad.size} numbers that are not finite, the first {bad[0]}")
+
+
+def kept(array: np.ndarray) -> np.ndarray:
     """A copy that cannot be written."""
     copy = np.array(array)
     copy.flags.writeable = False

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 import torch
 from gymnasium import spaces
+from sb3_contrib.common.recurrent.policies import RecurrentActorCriticPolicy
 from sb3_contrib.common.torch_layers import BatchRenorm
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
@@ -13,6 +14,9 @@ from torch import nn
 
 from agents.actor import Actor
 from agents.policy import Reach
+from agents.predictor import begin
+from agents.recurrent_actor import AnyActor, LstmCell, RecurrentActor
+from agents.remembering import flown
 
 Affine = tuple[np.ndarray, np.ndarray]
 BETWEEN: dict[type[nn.Module], str] = {
@@ -24,15 +28,17 @@ BETWEEN: dict[type[nn.Module], str] = {
     nn.LeakyReLU: "leaky-relu",
 }
 LAST: dict[type[nn.Module], str] = {Reach: "reach", nn.Tanh: "tanh"}
-PROBES, CLOSE_ENOUGH = 64, 1e-3
-"""Observations on which an actor must agree with its model, and how closely; rounding stays below 1e-5."""
+BEATS, PROBES, CLOSE_ENOUGH = 4, 64, 1e-3
+"""Beats of as many observations on which an actor must agree with its model, and how closely; rounding stays below
+1e-5."""
 
 
-def actor_of(model: BaseAlgorithm) -> Actor:
+def actor_of(model: BaseAlgorithm) -> AnyActor:
     """The deterministic part of a model's policy: what `model.predict(..., deterministic=True)` computes.
 
-    Known are PPO's (`HoverPolicy`, `MlpPolicy`), SAC's, TQC's, TD3's and CrossQ's networks on flat observations; the
-    batch renormalisation of CrossQ, affine once it is trained, goes into the layer beside it.
+    Known are PPO's (`HoverPolicy`, `MlpPolicy`), RecurrentPPO's (`MlpLstmPolicy`), SAC's, TQC's, TD3's and CrossQ's
+    networks on flat observations; the batch renormalisation of CrossQ, affine once it is trained, goes into the layer
+    beside it.
 
     Raises:
         ValueError: for spaces, a policy or a layer that an `Actor` has no place for.
@@ -44,20 +50,25 @@ def actor_of(model: BaseAlgorithm) -> Actor:
         raise ValueError(f"observation space {seen} is not allowed; allowed: a Box of shape (n,)")
     if not isinstance(chosen, spaces.Box) or len(chosen.shape) != 1 or {*chosen.low, *-chosen.high} != {-1}:
         raise ValueError(f"action space {chosen} is not allowed; allowed: a Box of [-1, 1] of shape (n,)")
-    actor = actor_of_modules(_modules(policy))
+    layers = actor_of_modules(_modules(policy))
+    actor: AnyActor = layers
+    if isinstance(policy, RecurrentActorCriticPolicy):
+        actor = RecurrentActor(_cell(policy.lstm_actor), layers)
     sizes, wanted = (actor.observation_size, actor.action_size), (seen.shape[0], chosen.shape[0])
     if sizes != wanted:
         raise ValueError(
             f"{type(policy).__name__} has layers from {sizes[0]} to {sizes[1]} numbers between spaces of {wanted[0]} "
             f"and {wanted[1]}; allowed: nothing but layers from observation to action"
         )
-    probes = np.random.default_rng(0).normal(size=(PROBES, *seen.shape)).astype(np.float32)
-    expected, _ = model.predict(probes, deterministic=True)
-    apart = float(np.max(np.abs(actor.predict(probes)[0] - expected)))
+    probes = np.random.default_rng(0).normal(size=(BEATS, PROBES, *seen.shape)).astype(np.float32)
+    own = flown(model)
+    pairs = [(actor.predict(beat)[0], own.predict(beat, deterministic=True)[0]) for beat in probes]
+    apart = float(np.max(np.abs(np.subtract(*zip(*pairs, strict=True)))))
+    begin(actor)
     if not apart < CLOSE_ENOUGH:
         raise ValueError(
             f"{type(policy).__name__} does more than its layers say: actions differ by {apart:.3g}; allowed: a "
-            "feed-forward network from observation to action"
+            "network from observation to action"
         )
     return actor
 
@@ -124,6 +135,18 @@ def _require_flat(extractor: BaseFeaturesExtractor | None) -> None:
     """Refuse what would stand between the observation and the first layer."""
     if type(extractor) is not FlattenExtractor:
         raise ValueError(f"features extractor {type(extractor).__name__} is not allowed; allowed: FlattenExtractor")
+
+
+def _cell(lstm: nn.LSTM) -> LstmCell:
+    """The cell of an LSTM of one layer; torch keeps its bias in two halves."""
+    if str(lstm) != str(nn.LSTM(lstm.input_size, lstm.hidden_size)):
+        raise ValueError(f"{lstm} is not allowed; allowed: LSTM of one layer, with the arguments it has by default")
+    numbers = {name: _numbers(parameter) for name, parameter in lstm.named_parameters()}
+    return LstmCell(
+        seen_weight=numbers["weight_ih_l0"].astype(np.float32),
+        held_weight=numbers["weight_hh_l0"].astype(np.float32),
+        bias=(numbers["bias_ih_l0"] + numbers["bias_hh_l0"]).astype(np.float32),
+    )
 
 
 def _flat(modules: Iterable[nn.Module]) -> Iterator[nn.Module]:

@@ -11,6 +11,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from tqdm import tqdm
 
 from agents.presets import Settings
+from agents.remembering import flown
 from agents.run_folder import CURVE, POLICY, write_atomically
 from agents.tasks import Task
 
@@ -72,7 +73,7 @@ class LearningCurve(BaseCallback):
         if not self._rewards:
             return
         began = time.monotonic()
-        mean, worst = self.task.glance(self.model)
+        mean, worst = self.task.glance(flown(self.model))
         reward = float(np.mean(self._rewards))
         self._rewards.clear()
         row = (self.num_timesteps, round(began - self.started - self.watching, 3), reward, mean, worst)

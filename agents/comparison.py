@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from agents.predictor import Predictor
+from agents.predictor import Predictor, begin
 from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
@@ -76,6 +76,7 @@ class Comparison:
     def beat(self, policy: Predictor) -> dict[str, np.ndarray]:
         """The infos of one wingbeat of every insect."""
         observations, _ = self.env.reset(options={"insect": self.names})
+        begin(policy)
         actions, _ = policy.predict(observations, deterministic=True)
         return self.env.step(actions)[-1]
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from agents.predictor import begin
 from flapenv.aero.checks import record, require_count
 from flapenv.envs.heave import HeaveVectorEnv
 
@@ -92,9 +93,7 @@ def fly(
         raise TypeError(f"infos = {arguments['infos']!r} is not an argument here; allowed: leave it out")
     env = HeaveVectorEnv(episodes, infos=["power_excess", "height_ratio", "reward/end"], **arguments)
     observations, _ = env.reset(seed=seed, options=options)
-    start = getattr(policy, "start", None)
-    if start is not None:
-        start()
+    begin(policy)
     flying, lost = np.ones(episodes, dtype=bool), np.zeros(episodes, dtype=bool)
     power, square, beats, returns = np.zeros((4, episodes))
     for _ in range(env.beats):

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from agents.predictor import Predictor
+from agents.predictor import Predictor, begin
 from flapenv.aero.checks import require_count, require_scalar
 
 NOISE_SHARE = 0.02
@@ -30,6 +30,10 @@ class NoisyActuators:
         """
         self.policy, self.share = policy, require_scalar("share", share, 0.0, 1.0)
         self._generator = np.random.default_rng(require_count("seed", seed, low=0))
+
+    def start(self) -> None:
+        """Let a policy with memory forget the last episodes; the noise goes on."""
+        begin(self.policy)
 
     def predict(self, observation: np.ndarray, *, deterministic: bool = True) -> tuple[np.ndarray, Any]:
         """The policy's actions with noise, not clipped."""

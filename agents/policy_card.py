@@ -8,13 +8,14 @@ from typing import Any
 import gymnasium as gym
 from gymnasium.vector import VectorEnv
 
-from agents.actor import ACTIVATIONS, SQUASHES, Actor
+from agents.actor import ACTIVATIONS, SQUASHES
+from agents.recurrent_actor import AnyActor
 from flapenv.aero.checks import record, require_count, require_name, require_scalar
 from flapenv.envs.registration import ENV_IDS
 
 FORMAT = 1
 """The version of card and tensors together."""
-NETWORK = ("observation_size", "action_size", "widths", "activation", "squash")
+NETWORK = ("observation_size", "action_size", "widths", "activation", "squash", "memory")
 """What network and card both know."""
 DIGEST_LENGTH = 64
 
@@ -32,6 +33,7 @@ class PolicyCard:
         widths: neurons of each hidden layer.
         activation: a name of `agents.actor.ACTIVATIONS`.
         squash: a name of `agents.actor.SQUASHES`.
+        memory: numbers that an LSTM before the layers remembers; 0 where there is none.
         algorithm: the learner, as one says it: "PPO".
         preset: the name of its settings.
         command: what was typed to train it.
@@ -60,6 +62,7 @@ class PolicyCard:
     wingbeats: int
     result: Mapping[str, Any]
     versions: Mapping[str, str]
+    memory: int = 0
     sha256: str = ""
     format: int = FORMAT
 
@@ -72,7 +75,7 @@ class PolicyCard:
         require_name("squash", self.squash, SQUASHES)
         for field in ("observation_size", "action_size"):
             require_count(field, getattr(self, field))
-        for field in ("seed", "wingbeats"):
+        for field in ("seed", "wingbeats", "memory"):
             require_count(field, getattr(self, field), low=0)
         for field in ("algorithm", "preset", "command", "sha256"):
             if not isinstance(getattr(self, field), str):
@@ -84,7 +87,7 @@ class PolicyCard:
         _require_result(self.result)
 
     @classmethod
-    def of(cls, actor: Actor, **facts: Any) -> "PolicyCard":
+    def of(cls, actor: AnyActor, **facts: Any) -> "PolicyCard":
         """The card of an actor, which fills in what the network says of itself; `facts` are the other fields.
 
         Raises:
@@ -113,7 +116,7 @@ class PolicyCard:
             raise ValueError(f"format = {content['format']!r} is unknown; allowed: {FORMAT}, which this version reads")
         return cls(**content)
 
-    def require_actor(self, actor: Actor) -> None:
+    def require_actor(self, actor: AnyActor) -> None:
         """Refuse an actor that is not the one described.
 
         Raises:

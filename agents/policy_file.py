@@ -13,6 +13,7 @@ from safetensors.numpy import save as tensors_as_bytes
 
 from agents.actor import Actor
 from agents.policy_card import PolicyCard
+from agents.recurrent_actor import AnyActor, RecurrentActor
 from agents.run_folder import POLICY_TENSORS, write_atomically, write_json
 from flapenv.aero.checks import allowed
 
@@ -27,7 +28,7 @@ def shipped_policies() -> dict[str, Path]:
     return {path.stem: path for path in sorted(SHIPPED.glob("*.safetensors"))}
 
 
-def save_policy(actor: Actor, card: PolicyCard, path: Path) -> PolicyCard:
+def save_policy(actor: AnyActor, card: PolicyCard, path: Path) -> PolicyCard:
     """Write the weights to `path` and the card beside it, each in one step.
 
     A crash between the two leaves weights that the older card does not know, which `load_policy` finds.
@@ -53,7 +54,7 @@ def save_policy(actor: Actor, card: PolicyCard, path: Path) -> PolicyCard:
     return card
 
 
-def load_policy(policy: str | os.PathLike[str]) -> tuple[Actor, PolicyCard]:
+def load_policy(policy: str | os.PathLike[str]) -> tuple[AnyActor, PolicyCard]:
     """A policy and its card, checked before anything is flown; nothing in the files is ever executed.
 
     The card's sha256 finds files that were cut short, damaged or mixed up. It is no signature: who changes the weights
@@ -76,8 +77,9 @@ def load_policy(policy: str | os.PathLike[str]) -> tuple[Actor, PolicyCard]:
             f"{path} is not the file that {card_path.name} describes: its sha256 is {digest[:12]}..., the card's "
             f"{card.sha256[:12] or 'empty'}...; allowed: the pair as it was saved, unchanged"
         )
+    kind = RecurrentActor if card.memory else Actor
     try:
-        actor = Actor.from_tensors(load_tensors(content), activation=card.activation, squash=card.squash)
+        actor = kind.from_tensors(load_tensors(content), activation=card.activation, squash=card.squash)
     except SafetensorError as problem:
         raise ValueError(f"{path} holds no safetensors: {problem}; allowed: what `save_policy` wrote") from None
     except (TypeError, ValueError, KeyError) as problem:  # KeyError: a dtype that NumPy does not have

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from agents.noisy_actuators import NOISE_SHARE, NoisyActuators
-from agents.predictor import Predictor
+from agents.predictor import Predictor, begin
 from flapenv.aero.checks import record, require_count
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.envs import HoverVectorEnv
@@ -222,6 +222,7 @@ def _scores(policy: Predictor, number: np.ndarray, *, seen: HoverVectorEnv, flow
         flown: what they fly in.
     """
     observations, _ = seen.reset(options={"insect": list(seen.flyers.names[number])})
+    begin(policy)
     actions, _ = policy.predict(observations, deterministic=True)
     info = seen.step(actions)[-1]
     return flown.objective.score(number, {name: info[f"stroke/{name}"] for name in STROKE_PARAMETERS})

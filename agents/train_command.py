@@ -15,7 +15,7 @@ CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings",
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    from agents.presets import ALGORITHMS, DEFAULT_PRESET, PRESETS
+    from agents.presets import DEFAULT_PRESET, PRESETS
     from flapenv import INSECTS, PROBLEMS
 
     budget = PRESETS[DEFAULT_PRESET].settings.wingbeats
@@ -47,7 +47,7 @@ def parser() -> argparse.ArgumentParser:
         "--preset", metavar="NAME", help=f"recipe: task and learner, see --list (default {DEFAULT_PRESET})"
     )
     made.add_argument(
-        "--algorithm", metavar="NAME", help=f"the hover preset of {', '.join(ALGORITHMS)}; in place of --preset"
+        "--algorithm", metavar="NAME", help=f"the hover preset of {', '.join(hover_learners())}; in place of --preset"
     )
     made.add_argument("--list", action="store_true", help="list all presets and end")
     made.add_argument("--config", type=Path, metavar="FILE", help="a run's config.json; in place of --preset")
@@ -117,7 +117,7 @@ def config_of(options: argparse.Namespace, command: str) -> Any:
         TypeError: for unknown keys or values of another kind.
         OSError: for a file that cannot be read.
     """
-    from agents.presets import ALGORITHMS, DEFAULT_PRESET, as_preset, setting_of
+    from agents.presets import DEFAULT_PRESET, as_preset, setting_of
     from agents.training import TrainingConfig
     from flapenv.aero.checks import require_name
 
@@ -126,8 +126,8 @@ def config_of(options: argparse.Namespace, command: str) -> Any:
         raise ValueError(f"--{given[0]} and --{given[1]} ask for two recipes; allowed: one of them")
     name, seed = options.preset or DEFAULT_PRESET, 0
     if options.algorithm is not None:
-        known = {algorithm.lower(): algorithm for algorithm in ALGORITHMS}
-        name = f"hover-{require_name('--algorithm', options.algorithm.lower(), known)}"
+        known = {algorithm.lower(): preset for algorithm, preset in hover_learners().items()}
+        name = known[require_name("--algorithm", options.algorithm.lower(), known)]
     chosen: Any = name
     if options.config is not None:
         name, seed, chosen = read_config(options.config)
@@ -139,6 +139,14 @@ def config_of(options: argparse.Namespace, command: str) -> Any:
         settings["wingbeats"] = options.wingbeats
     seed = seed if options.seed is None else options.seed
     return TrainingConfig(preset=preset.changed(task, settings), name=name, seed=seed, command=command)
+
+
+def hover_learners() -> dict[str, str]:
+    """Learners with a hover preset of their name, and that name."""
+    from agents.presets import ALGORITHMS, PRESETS
+
+    names = {algorithm: f"hover-{algorithm.lower()}" for algorithm in ALGORITHMS}
+    return {algorithm: name for algorithm, name in names.items() if name in PRESETS}
 
 
 def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:

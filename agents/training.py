@@ -16,6 +16,7 @@ from agents.curve_picture import draw_learning_curve
 from agents.policy_card import PolicyCard
 from agents.policy_file import save_policy
 from agents.presets import DEFAULT_PRESET, Preset, as_preset
+from agents.remembering import flown
 from agents.run_folder import (
     CONFIG,
     CURVE_PICTURE,
@@ -118,7 +119,7 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
     task, settings = preset.make_task(), preset.settings
     torch.set_num_threads(settings.threads)
     model = make_model(preset, task, config.seed)
-    task.glance(model)  # references are solved before the clock starts
+    task.glance(flown(model))  # references are solved before the clock starts
     out = open_run_folder(out, f"{config.name}-seed{config.seed}")
     write_json(out / CONFIG, {**described, "versions": versions()})
     model.set_logger(configure(str(out / TENSORBOARD), ["tensorboard"]))
@@ -141,13 +142,13 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
     curve.measure()
     result = TrainingResult(
         out=out,
-        verdict=task.judge(model),
+        verdict=task.judge(flown(model)),
         wingbeats=model.num_timesteps,
         seconds=seconds - curve.watching,
         interrupted=interrupted,
     )
     save_results(config, result, model)
-    draw_pictures(task, result, model)
+    draw_pictures(task, result, flown(model))
     return result
 
 

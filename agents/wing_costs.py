@@ -9,7 +9,7 @@ import numpy as np
 from agents.budget import Budget
 from agents.competition import median_to_solve
 from agents.competitors import load_libraries, run
-from agents.predictor import Predictor
+from agents.predictor import Predictor, begin
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.insect_choice import choose_pool
@@ -92,6 +92,7 @@ def _best(policy: Predictor, observations: np.ndarray) -> float:
     best = np.inf
     for _ in range(REPETITIONS):
         started = time.perf_counter()
+        begin(policy)
         policy.predict(observations, deterministic=True)
         best = min(best, time.perf_counter() - started)
     return float(best)

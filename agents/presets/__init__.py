@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
-from agents.presets import crossq, gradient, ppo, sac, td3, tqc
+from agents.presets import crossq, gradient, ppo, recurrent_ppo, sac, td3, tqc
 from agents.presets.crossq import CrossQSettings
 from agents.presets.gradient import GradientSettings
 from agents.presets.ppo import PPOSettings
 from agents.presets.preset import Preset, Settings, setting_of
+from agents.presets.recurrent_ppo import RecurrentPPOSettings
 from agents.presets.sac import SACSettings
 from agents.presets.td3 import TD3Settings
 from agents.presets.tqc import TQCSettings
@@ -21,6 +22,7 @@ __all__ = [
     "GradientSettings",
     "PPOSettings",
     "Preset",
+    "RecurrentPPOSettings",
     "SACSettings",
     "Settings",
     "TD3Settings",
@@ -29,12 +31,11 @@ __all__ = [
     "setting_of",
 ]
 
-PRESETS: dict[str, Preset] = {
-    name: preset for learner in (ppo, sac, td3, tqc, crossq, gradient) for name, preset in learner.PRESETS.items()
-}
+LEARNERS = (ppo, recurrent_ppo, sac, td3, tqc, crossq, gradient)
+PRESETS: dict[str, Preset] = {name: preset for learner in LEARNERS for name, preset in learner.PRESETS.items()}
 """Every recipe by name, the default one first."""
 DEFAULT_PRESET = next(iter(PRESETS))
-KINDS = (PPOSettings, SACSettings, TD3Settings, TQCSettings, CrossQSettings, GradientSettings)
+KINDS = (PPOSettings, RecurrentPPOSettings, SACSettings, TD3Settings, TQCSettings, CrossQSettings, GradientSettings)
 ALGORITHMS: dict[str, Any] = {kind.algorithm: kind for kind in KINDS}
 """The settings' record of every learner by its name."""
 DESCRIBED = ("task", "algorithm", "settings")

@@ -8,7 +8,7 @@ import numpy as np
 
 from agents.predictor import Predictor
 from agents.tasks.described import described
-from agents.tasks.held_out import HELD_OUT_SEED, mean_with_interval, noise_free
+from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree, mean_with_interval
 from agents.tasks.task import Verdict
 from flapenv.adapt.tuning import NAMES
 from flapenv.aero.checks import record
@@ -81,7 +81,8 @@ class HoverAdaptTask:
     def glance(self, policy: Predictor) -> tuple[float, float]:
         """The verdict on few draws, without the references."""
         env = self._glanced
-        act = noise_free(policy)
+        act = NoiseFree(policy)
+        act.start()
         observations, _ = env.reset(seed=HELD_OUT_SEED, options=self._each_insect(GLANCES))
         for _ in range(env.beats):
             observations, _, _, _, info = env.step(act(observations))
@@ -98,7 +99,8 @@ class HoverAdaptTask:
         env = HoverAdaptVectorEnv(
             draws * len(self._flyers), insect=list(self._flyers), dtype="float64", autoreset_mode="DISABLED"
         )
-        act = noise_free(policy)
+        act = NoiseFree(policy)
+        act.start()
         observations, _ = env.reset(seed=HELD_OUT_SEED, options=self._each_insect(draws))
         infos = []
         for _ in range(env.beats):

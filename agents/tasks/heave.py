@@ -11,7 +11,7 @@ from agents.lqg import RATIOS, fly_every
 from agents.lqg_controller import Lqg, lqg
 from agents.predictor import Predictor
 from agents.tasks.described import described
-from agents.tasks.held_out import HELD_OUT_SEED, mean_with_interval, noise_free
+from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree, mean_with_interval
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs.heave import HeaveVectorEnv
@@ -81,12 +81,12 @@ class HeaveTask:
 
     def glance(self, policy: Predictor) -> tuple[float, float]:
         """The verdict on few gusts, beside one LQG that is flown once."""
-        behind = np.mean(self._glanced_lqg - self._glanced_returns(noise_free(policy)), axis=1) / BEATS
+        behind = np.mean(self._glanced_lqg - self._glanced_returns(NoiseFree(policy)), axis=1) / BEATS
         return float(np.mean(behind)), float(np.max(behind))
 
     def judge(self, policy: Predictor) -> Verdict:
         """Returns, and power at equal height, beside LQG's front through the same gusts."""
-        act = noise_free(policy)
+        act = NoiseFree(policy)
         entries = {}
         for insect in self._flyers:
             own = fly(act, episodes=EPISODES, seed=HELD_OUT_SEED, insect=insect)
@@ -103,7 +103,7 @@ class HeaveTask:
         """The policy on LQG's front and one of its episodes, for the first insect."""
         from agents.tasks.heave_picture import draw_beside_front
 
-        return draw_beside_front(self._flyers[0], noise_free(policy), HELD_OUT_SEED)
+        return draw_beside_front(self._flyers[0], NoiseFree(policy), HELD_OUT_SEED)
 
     def to_dict(self) -> dict[str, Any]:
         """The insects."""

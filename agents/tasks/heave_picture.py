@@ -7,6 +7,7 @@ import numpy as np
 from agents.heave_flights import EPISODES, Policy, fly
 from agents.lqg import RATIOS, draw_front_on, fly_front
 from agents.lqg_controller import lqg
+from agents.predictor import begin
 from flapenv.drawing import BLUE, GREY, RED, require_matplotlib
 from flapenv.envs.heave import HeaveVectorEnv
 from flapenv.insects import Insect
@@ -65,9 +66,7 @@ def _first_episode(insect: Insect, act: Policy, seed: int) -> np.ndarray:
     keys = ["height_ratio", "gust_ratio", "stroke/flap_amplitude"]
     env = HeaveVectorEnv(SHOWN, insect=insect, infos=keys)
     observations, _ = env.reset(seed=seed)
-    start = getattr(act, "start", None)
-    if start is not None:
-        start()
+    begin(act)
     path = []
     for _ in range(env.beats):
         observations, _, terminated, truncated, info = env.step(act(observations))

@@ -1,10 +1,8 @@
 """What is common to judging policies: draws that no training run meets, noise-free actions and paired intervals."""
 
-from collections.abc import Callable
-
 import numpy as np
 
-from agents.predictor import Predictor
+from agents.predictor import Predictor, begin
 
 HELD_OUT_SEED = 2**32
 """Above every seed that a training run can have."""
@@ -12,13 +10,20 @@ NORMAL_95 = 1.96
 """Standard errors either side of a mean that hold it with 95 %."""
 
 
-def noise_free(policy: Predictor) -> Callable[[np.ndarray], np.ndarray]:
-    """Observations to actions, without the policy's noise."""
+class NoiseFree:
+    """Observations to actions, without the policy's noise; `start` before episodes begin."""
 
-    def act(observations: np.ndarray) -> np.ndarray:
-        return policy.predict(observations, deterministic=True)[0]
+    def __init__(self, policy: Predictor) -> None:
+        """Wrap a policy."""
+        self._policy = policy
 
-    return act
+    def start(self) -> None:
+        """Let a policy with memory forget the last episodes."""
+        begin(self._policy)
+
+    def __call__(self, observations: np.ndarray) -> np.ndarray:
+        """Actions of all rows."""
+        return self._policy.predict(observations, deterministic=True)[0]
 
 
 def mean_with_interval(values: np.ndarray) -> tuple[float, float]:

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.predictor import Predictor
+from agents.predictor import Predictor, begin
 from agents.tasks.described import described
-from agents.tasks.held_out import HELD_OUT_SEED, noise_free
+from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record, require_count
 from flapenv.aero.spline_motion import SplineMotion
@@ -154,5 +154,6 @@ class WaveformTask:
         """Infos of the noise-free wingbeat of every insect."""
         names = [insect.name for insect in self._flyers]
         observations, _ = self._judged.reset(seed=HELD_OUT_SEED, options={"insect": names})
-        info: dict[str, Any] = self._judged.step(noise_free(policy)(observations))[-1]
+        begin(policy)
+        info: dict[str, Any] = self._judged.step(NoiseFree(policy)(observations))[-1]
         return info

@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 
-from agents.predictor import Predictor
+from agents.predictor import Predictor, begin
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.insect_choice import choose_pool
@@ -94,6 +94,7 @@ class WingPool:
     def fly(self, policy: Predictor) -> WingFlights:
         """One noise-free wingbeat of every wing."""
         observations, _ = self.env.reset(options={"insect": list(self.env.flyers.names)})
+        begin(policy)
         actions, _ = policy.predict(observations, deterministic=True)
         info = self.env.step(actions)[-1]
         known = info["_optimality_gap"]

@@ -77,6 +77,7 @@ CONFIG = {"task": {"name": "hover"}, "algorithm": "PPO", "settings": {"wingbeats
         (("--insects", "hawkmoth", "hawkmoth"), "2 called 'hawkmoth'"),
         (("--preset", "hover-pp"), "did you mean 'hover-ppo'?"),
         (("--algorithm", "gradent"), "did you mean 'gradient'?"),
+        (("--algorithm", "recurrentppo"), "--algorithm = 'recurrentppo' is unknown; allowed: ppo, sac"),
         (("--algorithm", "ppo", "--preset", "hover-ppo"), "--preset and --algorithm ask for two recipes"),
         (("--set", "row=3"), "did you mean 'rows'?"),
         (("--set", "rows=many"), "rows = 'many' is not"),
