@@ -32,6 +32,7 @@ PRESETS = (
     "hover-gradient",
     "random-wings-ppo",
     "adapt-ppo",
+    "adapt-recurrentppo",
     "waveform-ppo",
     "heave-ppo",
 )
