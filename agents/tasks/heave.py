@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.heave_flights import EPISODES, Flights, Policy, compare_with_front, fly
-from agents.lqg import RATIOS, fly_every
+from agents.lqg import RATIOS
 from agents.lqg_controller import Lqg, lqg
 from agents.predictor import Predictor
 from agents.tasks.described import described
@@ -89,7 +89,7 @@ class HeaveTask:
         act = NoiseFree(policy)
         entries = {}
         for insect in self._flyers:
-            own = fly(act, episodes=EPISODES, seed=HELD_OUT_SEED, insect=insect)
+            own = fly(act, episodes=EPISODES, seed=HELD_OUT_SEED, insect=insect, dtype="float64")
             entries[insect.name] = _entry(own, lqg_flights(insect), BEATS)
         behind = [entry["cost_above_lqg"] for entry in entries.values()]
         return Verdict(
@@ -130,7 +130,10 @@ class HeaveTask:
 @functools.lru_cache(maxsize=16)
 def lqg_flights(insect: Insect) -> tuple[Flights, ...]:
     """LQG's front of one insect on the held-out gusts; some two seconds, then kept."""
-    return fly_every(lqg, insect, ratios=RATIOS, episodes=EPISODES, seed=HELD_OUT_SEED)
+    return tuple(
+        fly(lqg(insect, ratio), episodes=EPISODES, seed=HELD_OUT_SEED, insect=insect, dtype="float64")
+        for ratio in RATIOS
+    )
 
 
 def _entry(own: Flights, front: Sequence[Flights], beats: int) -> dict[str, Any]:

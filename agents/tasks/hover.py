@@ -1,6 +1,5 @@
 """Hover-v0 with named insects, or a user's own: one policy for all of them, beside optimum, bound and CFD."""
 
-from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,7 @@ from agents.tasks.described import described
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
-from flapenv.insects import INSECTS, as_insect
+from flapenv.envs.insect_choice import listed_insects
 from flapenv.problem import as_problem
 
 if TYPE_CHECKING:
@@ -24,11 +23,11 @@ class HoverTask:
     """Hover with the least power, a few insects by name.
 
     Attributes:
-        insects: names or `Insect`s, or dicts of them.
+        insects: "all", a name, an `Insect`, the dict of one, or a list of these.
         problem: by name, as a `HoverProblem` or as the dict of one.
     """
 
-    insects: Sequence[Any] = INSECTS
+    insects: Any = "all"
     problem: Any = "free-frequency"
 
     environment = "flapenv/Hover-v0"
@@ -36,9 +35,7 @@ class HoverTask:
 
     def __post_init__(self) -> None:
         """Resolve insects and problem, which may be dicts as from config.json."""
-        if isinstance(self.insects, str) or not isinstance(self.insects, Sequence) or not self.insects:
-            raise TypeError(f"insects = {self.insects!r} are not allowed; allowed: a list of names or insects")
-        object.__setattr__(self, "insects", tuple(as_insect(insect) for insect in self.insects))
+        object.__setattr__(self, "insects", listed_insects(self.insects))
         object.__setattr__(self, "problem", as_problem(self.problem))
 
     def vector_env(self, rows: int) -> HoverVectorEnv:

@@ -37,13 +37,15 @@ class RandomWingsTask:
     leave_out: Any = None
 
     environment = "flapenv/Hover-v0"
-    distance = "gap to the optimum, 10,000 test wings"
+    distance = f"gap to the optimum, {TEST_WINGS:,} test wings"
 
     def __post_init__(self) -> None:
         """Resolve the problem and the insect, which may be dicts as from config.json; check the rest."""
         object.__setattr__(self, "problem", as_problem(self.problem))
-        require_count("pool_size", self.pool_size)
-        require_count("pool_seed", self.pool_seed, low=0)
+        if not self.problem.model.has_proven_bound:
+            raise ValueError(f"problem = {self.problem.name!r} proves no bound; allowed: problems with a proven bound")
+        object.__setattr__(self, "pool_size", require_count("pool_size", self.pool_size))
+        object.__setattr__(self, "pool_seed", require_count("pool_seed", self.pool_seed, low=0))
         if self.leave_out is not None:
             object.__setattr__(self, "leave_out", as_insect(self.leave_out))
 
@@ -100,7 +102,7 @@ class RandomWingsTask:
         )
 
     def draw(self, policy: Predictor) -> "Figure":
-        """Gaps and frequency errors over aspect ratio and over the weight support seen."""
+        """Gaps and frequency errors over aspect ratio."""
         from agents.tasks.wings_picture import draw_wings
 
         return draw_wings({split: (pool, pool.fly(policy)) for split, pool in self._pools.items()})
@@ -116,10 +118,11 @@ class RandomWingsTask:
 
 
 def wings_table(flown: dict[str, WingFlights]) -> str:
-    """Gaps, weight support and frequency errors, one line a split."""
+    """Gaps, weight support and errors, one line a split; wings that cannot hover are counted, not averaged."""
     header = (
         "random wings",
         "number",
+        "infeasible",
         "mean gap",
         "median",
         "95 %",
@@ -128,7 +131,7 @@ def wings_table(flown: dict[str, WingFlights]) -> str:
         "weight",
         "least weight",
     )
-    units = ("", "", "%", "%", "%", "%", "f %", "support %", "support")
+    units = ("", "", "", "%", "%", "%", "%", "f %", "support %", "support")
     rows: list[tuple[str, ...]] = [header, units]
     for split, flights in flown.items():
         row = flights.to_dict()
@@ -137,6 +140,7 @@ def wings_table(flown: dict[str, WingFlights]) -> str:
             (
                 split,
                 f"{len(flights.gaps):,}",
+                f"{row['infeasible']:,}",
                 *(f"{gap:.3f}" for gap in gaps),
                 f"{100 * flights.rms_frequency_error:.3f}",
                 f"{row['rms_weight_support_error_percent']:.3f}",

@@ -22,11 +22,14 @@ class WingFlights:
     """One wingbeat of a policy on every wing of a pool; arrays of shape (n,).
 
     Attributes:
-        gaps: to the optimum of the box, missing weight charged [-]; wings that no stroke lifts are left out.
+        feasible: which wings of the pool some stroke of the box lifts, shape (pool,); the others are left out of what
+            follows.
+        gaps: to the optimum of the box, missing weight charged [-].
         weight_support: Λ [-].
         frequency_error: log of f over the optimum's [-]; 0 where the problem fixes f.
     """
 
+    feasible: np.ndarray
     gaps: np.ndarray
     weight_support: np.ndarray
     frequency_error: np.ndarray
@@ -50,6 +53,7 @@ class WingFlights:
         """As results.json keeps it."""
         return {
             "wings": len(self.gaps),
+            "infeasible": int(np.sum(~self.feasible)),
             "mean_gap_percent": 100 * self.mean,
             "median_gap_percent": 100 * float(np.median(self.gaps)),
             "p95_gap_percent": 100 * self.most,
@@ -74,7 +78,7 @@ class WingPool:
             seed: of the pool.
 
         Raises:
-            ValueError: for a problem without a proven bound.
+            ValueError: for a problem without a proven bound, or one in which no wing hovers.
         """
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=".*outside the range of the lifting-line")  # AR 2.2 and 2.6
@@ -90,6 +94,10 @@ class WingPool:
                 dtype="float64",
             )
             self.best = many_optima(choose_pool(problem, size=size, seed=seed, split=split, leave_out=None), problem)
+        if not np.any(self.best.feasible):
+            raise ValueError(
+                f"problem = {problem.name!r} lets none of {size} {split} wings hover; allowed: wider bounds"
+            )
 
     def fly(self, policy: Predictor) -> WingFlights:
         """One noise-free wingbeat of every wing."""
@@ -100,6 +108,7 @@ class WingPool:
         known = info["_optimality_gap"]
         error = np.log(info["stroke/frequency"] / self.best.stroke.frequency)
         return WingFlights(
+            feasible=known,
             gaps=info["optimality_gap"][known],
             weight_support=info["weight_support"][known],
             frequency_error=np.broadcast_to(error, known.shape)[known],

@@ -110,7 +110,8 @@ def fold(alpha: Real) -> tuple[Real, Real]:
     """
     xp, alpha = as_arrays(alpha)
     sine, cosine = xp.sin(alpha), xp.cos(alpha)
-    return xp.atan2(xp.abs(sine), xp.abs(cosine)), 1 - 2 * xp.heaviside(-sine * cosine, xp.zeros_like(sine))
+    one = xp.ones_like(sine)
+    return xp.atan2(xp.abs(sine), xp.abs(cosine)), xp.where(sine * cosine < 0, -one, one)
 
 
 def robofly_lift(alpha: Real) -> Real:

@@ -9,11 +9,12 @@ from gymnasium import spaces
 from gymnasium.vector import AutoresetMode
 
 from flapenv.aero.accelerators import Accelerator
+from flapenv.aero.arrays import as_numpy, as_numpy_type, is_tensor
 from flapenv.aero.checks import require_count, require_flag, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
-from flapenv.envs.arguments import InfoChoice, refuse_unknown, refuse_unused
+from flapenv.envs.arguments import InfoChoice, checked_actions, refuse_unknown, refuse_unused
 from flapenv.envs.batch import Info
 from flapenv.envs.hover_of_one import HoverOfOne
 from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool
@@ -169,15 +170,22 @@ class HoverVectorEnv(OneBeatEnv):
         """What every row would be paid if it beat so now, with its gradient; nothing is stepped, no floor applied.
 
         Args:
-            actions: tensor of shape (num_envs, n), finite; clipped to [-1, 1], beyond which there is no gradient.
+            actions: tensor of shape (num_envs, n), float32 or float64, finite; clipped to [-1, 1], beyond which there
+                is no gradient (on a face itself there is one or none, as its bound is rounded).
 
         Returns:
-            Rewards, a tensor of shape (num_envs,).
+            The sum of power and lift term of every row, whatever `reward` says; a tensor of shape (num_envs,).
 
         Raises:
+            TypeError: for actions that are no tensor of such numbers.
+            ValueError: for actions of another shape, or with NaN or inf.
             gymnasium.error.ResetNeeded: before the first reset, and where a row has ended.
         """
         self._require_running()
+        kind = as_numpy_type(actions).name if is_tensor(actions) else type(actions).__name__
+        if kind not in ("float32", "float64"):
+            raise TypeError(f"actions of type {kind} are not allowed; allowed: a tensor of float32 or float64")
+        checked_actions("actions", as_numpy(actions), self.action_space.shape)
         strokes, _ = self.coordinates.decode(actions, self._own(self._insect))
         return -self.objective.cost(self._insect, strokes)[-1]
 
