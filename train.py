@@ -1,7 +1,10 @@
 """Train policies that hover with the least power, judge them, and compare them with optimisers: see --help."""
 
 import sys
+import warnings
 from importlib import import_module
+
+from flapenv.aero.checks import allowed
 
 COMMANDS = ("benchmark", "compare", "evaluate")
 """Each is NAME_command of agents.NAME_command; without one of them a policy is trained."""
@@ -11,11 +14,16 @@ def main(arguments: list[str] | None = None) -> int:
     """Run the command asked for; 0 on success, 2 for bad input, 130 after Ctrl-C."""
     arguments = sys.argv[1:] if arguments is None else arguments
     name, rest = ("train", arguments)
-    if arguments and arguments[0] in COMMANDS:
+    if arguments and not arguments[0].startswith("-"):
         name, *rest = arguments
+        if name not in COMMANDS:
+            print(f"train.py: command {name!r} is unknown; {allowed(name, COMMANDS)}", file=sys.stderr)
+            return 2
     try:
-        command = getattr(import_module(f"agents.{name}_command"), f"{name}_command")
-        return int(command(rest))
+        with warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_: print(f"train.py: {message}", file=sys.stderr)
+            command = getattr(import_module(f"agents.{name}_command"), f"{name}_command")
+            return int(command(rest))
     except ImportError as missing:
         print(f"train.py: {missing}; install the learners: pip install -e '.[train]'", file=sys.stderr)
         return 2

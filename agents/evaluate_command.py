@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from agents.one_line_parser import OneLineParser, folder
+
 DEFAULT_POLICY = "hover"
 """The shipped policy that is judged where none is named."""
 
@@ -14,13 +16,12 @@ def parser() -> argparse.ArgumentParser:
     """The command line."""
     from agents.noisy_actuators import NOISE_SHARE
 
-    made = argparse.ArgumentParser(
+    made = OneLineParser(
         prog="train.py evaluate",
         description=(
             "Judge policies against their task's reference: a shipped one, a run's, or a file. Weights are read from\n"
             "safetensors and flown in NumPy; nothing is unpickled."
         ),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog=(
             "examples:\n"
             "  python train.py evaluate --list                     the shipped policies\n"
@@ -54,7 +55,7 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="random wings: what a new wing costs, beside multi-start SLSQP and the batched optimum",
     )
-    made.add_argument("--out", type=Path, metavar="DIR", help="keep results.json and the picture of each policy here")
+    made.add_argument("--out", type=folder, metavar="DIR", help="keep results.json and the picture of each policy here")
     return made
 
 
@@ -65,16 +66,37 @@ def evaluate_command(arguments: list[str]) -> int:
         if options.list:
             print(shipped_table())
             return 0
-        for policy in options.policies or [DEFAULT_POLICY]:
-            print(evaluated(policy, options), flush=True)
+        policies = options.policies or [DEFAULT_POLICY]
+        folders = _folders(policies, options.out)
+        for policy, kept in zip(policies, folders, strict=True):
+            print(evaluated(policy, options, kept), flush=True)
     except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
         print(f"train.py evaluate: {mistake}", file=sys.stderr)
         return 2
     return 0
 
 
-def evaluated(policy: str, options: argparse.Namespace) -> str:
-    """One policy's verdict as text; files in the folder asked for.
+def _folders(policies: list[str], out: Path | None) -> list[Path | None]:
+    """A folder for each policy's results before anything is judged; None where none are to be kept.
+
+    Raises:
+        ValueError: for two policies of one name.
+        OSError: for a folder that cannot be used.
+    """
+    from agents.run_folder import open_run_folder
+
+    if out is None:
+        return [None] * len(policies)
+    paths = [Path(policy) for policy in policies]
+    names = [path.parent.name if path.suffix == ".safetensors" else path.name for path in paths]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{names.count(name)} policies are called {name!r}; allowed with --out: each name once")
+    return [open_run_folder(out / name, "") for name in names]
+
+
+def evaluated(policy: str, options: argparse.Namespace, kept: Path | None) -> str:
+    """One policy's verdict as text; files in the folder given.
 
     Raises:
         ValueError: for an unknown policy or one that does not fit what it is asked for.
@@ -83,10 +105,12 @@ def evaluated(policy: str, options: argparse.Namespace) -> str:
     """
     from agents.noisy_actuators import NoisyActuators
     from agents.policy_file import load_policy
-    from agents.run_folder import RESULT_PICTURE, RESULTS, open_run_folder, versions, write_json
+    from agents.run_folder import RESULT_PICTURE, RESULTS, versions, write_json
 
     actor, card = load_policy(policy)
     task = _task(card.task, {"insects": options.insects, "problem": options.problem})
+    if card.environment != task.environment:
+        raise ValueError(f"the card of {policy} says {card.environment}, its task flies {task.environment}")
     card.require_fit(task.vector_env(1))
     flown = NoisyActuators(actor, options.noise) if options.noise else actor
     verdict = task.judge(flown)
@@ -98,13 +122,12 @@ def evaluated(policy: str, options: argparse.Namespace) -> str:
     if options.costs:
         costs, told = _costs(actor, task, card.wingbeats)
         text, results = f"{text}\n\n{told}", {**results, "costs": costs}
-    if options.out is not None:
-        folder = open_run_folder(options.out / Path(policy).name, "")
+    if kept is not None:
         scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": task.distance}
         about = {"policy": Path(policy).name, "sha256": card.sha256, "noise": options.noise, "verdict": scores}
-        write_json(folder / RESULTS, {**about, **results, "versions": versions()})
-        task.draw(flown).savefig(folder / RESULT_PICTURE)
-        text += f"\nkept in {folder}"
+        write_json(kept / RESULTS, {**about, **results, "versions": versions()})
+        task.draw(flown).savefig(kept / RESULT_PICTURE)
+        text += f"\nkept in {kept}"
     return text + "\n"
 
 
@@ -118,7 +141,7 @@ def _task(described: Mapping[str, Any], asked: Mapping[str, Any]) -> Any:
     own |= {name: value for name, value in asked.items() if value is not None}
     name = require_name("task", described.get("name"), TASKS)
     if name == "random-wings" and own.get("insects"):  # a policy for every wing flies named ones, too
-        name, own = "hover", {key: own[key] for key in ("insects", "problem")}
+        name, own = "hover", {key: own[key] for key in ("insects", "problem") if key in own}
     return Preset(task=name, arguments=own, settings=None).make_task()
 
 

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from agents.one_line_parser import OneLineParser, folder
 from flapenv.aero.checks import allowed
 
 CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "versions")
@@ -19,14 +20,12 @@ def parser() -> argparse.ArgumentParser:
     from flapenv import INSECTS, PROBLEMS
 
     budget = PRESETS[DEFAULT_PRESET].settings.wingbeats
-    made = argparse.ArgumentParser(
+    made = OneLineParser(
         prog="train.py",
         description=(
             "Train a policy that hovers with the least power, and compare it with the proven optimum and CFD.\n\n"
             "With no argument: one policy for all eight insects, from random weights, on the CPU, in a few minutes."
         ),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
         epilog=(
             "examples:\n"
             "  python train.py                              all eight insects, seed 0, into runs/hover-ppo-seed0/\n"
@@ -35,7 +34,7 @@ def parser() -> argparse.ArgumentParser:
             "  python train.py --preset random-wings-ppo    one policy for every wing; see --list\n"
             "  python train.py --set rows=4096 --set learning_rate=0.001\n\n"
             "other commands, each with its own --help:\n"
-            "  python train.py evaluate hover               a policy under noise and in other models\n"
+            "  python train.py evaluate hover               a shipped policy, or a run's, judged again\n"
             "  python train.py benchmark                    every learner and every task, five seeds each\n"
             "  python train.py compare                      optimisers on the same strokes, with equal budgets\n\n"
             "a run folder holds config.json, results.json, the policy (policy.safetensors with its card policy.json,\n"
@@ -50,10 +49,10 @@ def parser() -> argparse.ArgumentParser:
         "--algorithm", metavar="NAME", help=f"the hover preset of {', '.join(hover_learners())}; in place of --preset"
     )
     made.add_argument("--list", action="store_true", help="list all presets and end")
-    made.add_argument("--config", type=Path, metavar="FILE", help="a run's config.json; in place of --preset")
+    made.add_argument("--config", type=folder, metavar="FILE", help="a run's config.json; in place of --preset")
     made.add_argument("--seed", type=int, metavar="N", help="of networks, noise and draws (default 0)")
     made.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder of the run, new or empty (default runs/PRESET-seedN/)"
+        "--out", type=folder, metavar="DIR", help="folder of the run, new or empty (default runs/PRESET-seedN/)"
     )
     made.add_argument(
         "--insects", nargs="+", metavar="NAME", help=f"of {', '.join(INSECTS)} (default all); of tasks that name them"
@@ -78,7 +77,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def train_command(arguments: list[str]) -> int:
-    """Train as the command line says; 0 on success, 2 for bad input, 130 after Ctrl-C."""
+    """Train as the command line says; 0 on success, 1 where training diverged, 2 for bad input, 130 after Ctrl-C."""
     options = parser().parse_args(arguments)
     if options.list:
         print(presets_table())
@@ -88,12 +87,9 @@ def train_command(arguments: list[str]) -> int:
         from agents.training import summary, train
 
         result = train(config, options.out, progress=not options.quiet)
-    except ImportError as missing:
-        print(f"train.py: {missing}; install the learners: pip install -e '.[train]'", file=sys.stderr)
-        return 2
-    except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
-        print(f"train.py: {mistake}", file=sys.stderr)
-        return 2
+    except (ValueError, TypeError, OSError, ArithmeticError, MemoryError) as mistake:
+        print(f"train.py: {str(mistake) or 'not enough memory'}", file=sys.stderr)
+        return 1 if isinstance(mistake, ArithmeticError) else 2
     print(summary(result), flush=True)
     return 130 if result.interrupted else 0
 
@@ -104,6 +100,10 @@ def what_counts(arguments: list[str]) -> list[str]:
     for one in rest:
         if one == "--out":
             next(rest, None)
+        elif one == "--config":
+            kept += [one, Path(next(rest, "")).name]  # not where on this machine it lies
+        elif one.startswith("--config="):
+            kept.append(f"--config={Path(one.partition('=')[2]).name}")
         elif one != "--quiet" and not one.startswith("--out="):
             kept.append(one)
     return kept
@@ -124,7 +124,7 @@ def config_of(options: argparse.Namespace, command: str) -> Any:
     given = [name for name in ("preset", "algorithm", "config") if getattr(options, name) is not None]
     if len(given) > 1:
         raise ValueError(f"--{given[0]} and --{given[1]} ask for two recipes; allowed: one of them")
-    name, seed = options.preset or DEFAULT_PRESET, 0
+    name, seed = DEFAULT_PRESET if options.preset is None else options.preset, 0
     if options.algorithm is not None:
         known = {algorithm.lower(): preset for algorithm, preset in hover_learners().items()}
         name = known[require_name("--algorithm", options.algorithm.lower(), known)]
@@ -157,12 +157,14 @@ def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
         TypeError: for an unknown key.
         OSError: if the file cannot be read.
     """
+    from agents.presets import as_preset
+
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except UnicodeDecodeError as mistake:
         raise ValueError(f"--config {path} is not text: {mistake}") from None
-    except json.JSONDecodeError as mistake:
-        raise ValueError(f"--config {path} is not JSON: {mistake}") from None
+    except (ValueError, RecursionError) as mistake:
+        raise ValueError(f"--config {path} is not JSON that can be read: {mistake}") from None
     if not isinstance(content, dict):
         raise TypeError(f"--config {path} holds no object; allowed: a config.json as a run writes it")
     for key in content:
@@ -172,7 +174,11 @@ def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
     missing = [key for key in needed if key not in content]
     if missing:
         raise ValueError(f"--config {path} lacks {', '.join(missing)}; allowed: a config.json as a run writes it")
-    return str(content.get("preset", "")), content.get("seed", 0), {key: content[key] for key in needed}
+    preset = {key: content[key] for key in needed}
+    told = content.get("environment")
+    if told is not None and told != (flies := as_preset(preset).make_task().environment):
+        raise ValueError(f"--config {path} has environment = {told!r}; allowed: {flies!r}, which its task flies")
+    return content.get("preset", ""), content.get("seed", 0), preset
 
 
 def presets_table() -> str:

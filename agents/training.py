@@ -1,5 +1,7 @@
 """Train one policy by a preset, keep it, and judge it against its task's reference."""
 
+import json
+import re
 import sys
 import time
 from pathlib import Path
@@ -13,9 +15,10 @@ from stable_baselines3.common.logger import configure
 from agents.actor_of import actor_of
 from agents.callbacks import Annealing, Checkpoints, LearningCurve, ProgressBar
 from agents.curve_picture import draw_learning_curve
+from agents.interrupts import one_interrupt
 from agents.policy_card import PolicyCard
 from agents.policy_file import save_policy
-from agents.presets import DEFAULT_PRESET, Preset, as_preset
+from agents.presets import DEFAULT_PRESET, PRESETS, Preset, as_preset
 from agents.remembering import flown
 from agents.run_folder import (
     CONFIG,
@@ -36,6 +39,10 @@ LAST_SEED = 2**32 - 1
 """The largest seed that NumPy's and torch's global generators both take."""
 
 
+class DivergedError(ArithmeticError):
+    """Raised where training has destroyed its own policy."""
+
+
 @record
 class TrainingConfig:
     """Everything a training run depends on.
@@ -44,7 +51,7 @@ class TrainingConfig:
         preset: a name of `agents.presets.PRESETS`, a `Preset`, or the dict of one.
         seed: of networks, noise and draws.
         name: what the run is called; the preset's where it is given by name.
-        command: what was typed, for the policy's card.
+        command: what was typed, for the policy's card; of a registered preset what one would type.
     """
 
     preset: Any = DEFAULT_PRESET
@@ -56,11 +63,17 @@ class TrainingConfig:
         """Resolve the preset; check the seed."""
         if require_count("seed", self.seed, low=0) > LAST_SEED:
             raise ValueError(f"seed = {self.seed} is not allowed; allowed: whole numbers from 0 to {LAST_SEED}")
+        for field in ("name", "command"):
+            if not isinstance(getattr(self, field), str):
+                raise TypeError(f"{field} = {getattr(self, field)!r} is not allowed; allowed: a text")
         preset = as_preset(self.preset)
         own = self.preset if isinstance(self.preset, str) else f"{preset.task}-{preset.settings.algorithm.lower()}"
-        object.__setattr__(self, "name", self.name or own)
-        if not self.command:
-            object.__setattr__(self, "command", f"python train.py --preset {self.name} --seed {self.seed}")
+        name = self.name or own
+        if not re.fullmatch(r"\w[\w.-]{0,99}", name):
+            raise ValueError(f"name = {name!r} is not allowed; allowed: letters, digits, '_', '-' and '.', 100 at most")
+        object.__setattr__(self, "name", name)
+        if not self.command and PRESETS.get(name) == preset:
+            object.__setattr__(self, "command", f"python train.py --preset {name} --seed {self.seed}")
         object.__setattr__(self, "preset", preset)
 
     def to_dict(self) -> dict[str, Any]:
@@ -112,9 +125,13 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
 
     Raises:
         FileExistsError: if the folder holds a run already.
+        DivergedError: if weights became NaN or inf.
         OSError: if it cannot be written.
     """
-    described = config.to_dict()  # before anything is spent on what cannot be kept
+    described = config.to_dict()
+    json.dumps(
+        described, ensure_ascii=False, allow_nan=False
+    ).encode()  # before anything is spent on what cannot be kept
     preset: Preset = config.preset
     task, settings = preset.make_task(), preset.settings
     torch.set_num_threads(settings.threads)
@@ -128,23 +145,29 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
     bar = ProgressBar(curve, settings.wingbeats, shown=progress)
     callbacks = CallbackList([Annealing(settings), curve, checkpoints, bar])
     started, interrupted = time.monotonic(), False
-    try:
-        model.learn(settings.wingbeats, callback=callbacks)
-    except KeyboardInterrupt:
-        interrupted = True
-    finally:
-        bar.close()
-    seconds = time.monotonic() - started
-    if interrupted:
-        print(f"stopped after {model.num_timesteps:,} wingbeats; keeping what was learned", file=sys.stderr)
-    checkpoints.init_callback(model)
-    checkpoints.save()
+    with one_interrupt():
+        try:
+            model.learn(settings.wingbeats, callback=callbacks)
+        except KeyboardInterrupt:
+            interrupted = True
+        except ValueError:
+            _require_finite(model)
+            raise
+        finally:
+            bar.close()
+        seconds = time.monotonic() - started - curve.watching
+        if interrupted:
+            print(f"stopped after {model.num_timesteps:,} wingbeats; keeping what was learned", file=sys.stderr)
+        _require_finite(model)
+        checkpoints.init_callback(model)
+        checkpoints.save()
+        save_actor(config, model, out, {"mean": None, "worst": None})
     curve.measure()
     result = TrainingResult(
         out=out,
         verdict=task.judge(flown(model)),
         wingbeats=model.num_timesteps,
-        seconds=seconds - curve.watching,
+        seconds=seconds,
         interrupted=interrupted,
     )
     save_results(config, result, model)
@@ -152,11 +175,22 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
     return result
 
 
-def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgorithm) -> None:
-    """Write results.json, and the policy's network as safetensors with its card."""
-    verdict, described = result.verdict, config.to_dict()
-    scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": config.preset.make_task().distance}
-    actor = actor_of(model)
+def _require_finite(model: BaseAlgorithm) -> None:
+    """Refuse a policy that has been destroyed.
+
+    Raises:
+        DivergedError: if a weight is NaN or inf.
+    """
+    if not all(bool(torch.isfinite(weights).all()) for weights in model.policy.parameters()):
+        raise DivergedError(
+            f"training diverged: after {model.num_timesteps:,} wingbeats weights are not finite, and none of them was "
+            "kept; a smaller learning rate may help"
+        )
+
+
+def save_actor(config: TrainingConfig, model: BaseAlgorithm, out: Path, result: dict[str, Any]) -> None:
+    """Write the policy's network as safetensors with its card, which says what it reached."""
+    described, actor = config.to_dict(), actor_of(model)
     card = PolicyCard.of(
         actor,
         environment=described["environment"],
@@ -165,15 +199,22 @@ def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgo
         preset=config.name,
         command=config.command,
         seed=config.seed,
-        wingbeats=result.wingbeats,
-        result={**scores, "seconds": round(result.seconds, 1)},
+        wingbeats=model.num_timesteps,
+        result=result,
         versions=versions(),
     )
-    save_policy(actor, card, result.out / POLICY_TENSORS)
+    save_policy(actor, card, out / POLICY_TENSORS)
+
+
+def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgorithm) -> None:
+    """Write results.json, and what the policy reached on its card."""
+    verdict = result.verdict
+    scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": config.preset.make_task().distance}
+    save_actor(config, model, result.out, {**scores, "seconds": round(result.seconds, 1)})
     write_json(
         result.out / RESULTS,
         {
-            **described,
+            **config.to_dict(),
             "verdict": scores,
             **verdict.results,
             "seconds": result.seconds,

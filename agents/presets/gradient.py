@@ -2,8 +2,9 @@
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from agents.presets.limits import require_an_update, require_counts
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_count, require_scalar
+from flapenv.aero.checks import record, require_scalar
 
 if TYPE_CHECKING:
     from stable_baselines3.common.vec_env import VecEnv
@@ -35,14 +36,14 @@ class GradientSettings:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        for name in ("wingbeats", "rows", "width", "threads"):
-            require_count(name, getattr(self, name))
+        require_counts(self, "wingbeats", "rows", "width", "threads")
+        require_an_update(self.wingbeats, 3 * self.rows, "3 x rows")
         for name in ("learning_rate", "learning_rate_power"):
             require_scalar(name, getattr(self, name), 0.0, open_low=True)
 
     def learning_rate_at(self, left: float) -> float:
-        """Learning rate of the step after which the fraction `left` of the budget is still to go."""
-        return float(self.learning_rate * max(left, self.rows / self.wingbeats) ** self.learning_rate_power)
+        """Learning rate of the step before which the fraction `left` of the budget is still to go."""
+        return float(self.learning_rate * max(left, 0.0) ** self.learning_rate_power)
 
     def build(self, env: "VecEnv", seed: int) -> "GradientAgent":
         """The agent with random weights."""

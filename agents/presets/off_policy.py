@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from agents.presets.limits import require_counts
 from flapenv.aero.checks import record, require_count, require_scalar
 
 if TYPE_CHECKING:
@@ -66,9 +67,8 @@ class OffPolicySettings(ABC):
             ValueError: for a value outside its range, for a buffer that cannot hold one batch of rows, and for a
                 budget that is spent before anything is learned.
         """
-        for name in ("wingbeats", "rows", "batch", "buffer", "gradient_steps", "width", "critic_width", "critics"):
-            require_count(name, getattr(self, name))
-        require_count("threads", self.threads)
+        require_counts(self, "wingbeats", "rows", "batch", "buffer", "gradient_steps", "width", "critic_width")
+        require_counts(self, "critics", "threads")
         require_count("learning_starts", self.learning_starts, low=0)
         for name in ("learning_rate", "learning_rate_power"):
             require_scalar(name, getattr(self, name), 0.0, open_low=True)

@@ -3,8 +3,9 @@
 import math
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from agents.presets.limits import require_an_update, require_counts
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_count, require_name, require_scalar
+from flapenv.aero.checks import record, require_name, require_scalar
 
 if TYPE_CHECKING:
     from stable_baselines3 import PPO
@@ -77,8 +78,10 @@ class PPOSettings:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        for name in ("wingbeats", "rows", "steps", "minibatch", "epochs", "width", "layers", "threads"):
-            require_count(name, getattr(self, name))
+        require_counts(self, "wingbeats", "rows", "steps", "minibatch", "epochs", "width", "layers", "threads")
+        require_an_update(self.wingbeats, self.rows * self.steps, "rows x steps")
+        if min(self.minibatch, self.rows * self.steps) < 2:
+            raise ValueError(f"minibatch = {self.minibatch} of rows = {self.rows} is not allowed; allowed: 2 and more")
         for name in ("learning_rate", "learning_rate_power", "clip_range", "target_kl", "reward_scale"):
             require_scalar(name, getattr(self, name), 0.0, open_low=True)
         require_scalar("learning_rate_ratio", self.learning_rate_ratio, 0.0, 1.0, open_low=True)
@@ -91,6 +94,8 @@ class PPOSettings:
         for name in ("gamma", "gae_lambda"):
             require_scalar(name, getattr(self, name), 0.0, 1.0)
         if self.first_mean is not None:
+            if not isinstance(self.first_mean, list | tuple):
+                raise TypeError(f"first_mean = {self.first_mean!r} is not allowed; allowed: a list of numbers, or none")
             for number, value in enumerate(self.first_mean):
                 require_scalar(f"first_mean[{number}]", value, -1.0, 1.0)
             object.__setattr__(self, "first_mean", tuple(float(value) for value in self.first_mean))

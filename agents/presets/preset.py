@@ -107,5 +107,5 @@ def setting_of(text: str) -> tuple[str, Any]:
         raise ValueError(f"--set {text} is not allowed; allowed: NAME=VALUE")
     try:
         return name, json.loads(value)
-    except json.JSONDecodeError:
+    except (json.JSONDecodeError, RecursionError):
         return name, value

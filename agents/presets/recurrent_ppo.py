@@ -2,8 +2,9 @@
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from agents.presets.limits import require_an_update, require_counts
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_count, require_scalar
+from flapenv.aero.checks import record, require_scalar
 
 if TYPE_CHECKING:
     from sb3_contrib import RecurrentPPO
@@ -54,8 +55,10 @@ class RecurrentPPOSettings:
 
     def __post_init__(self) -> None:
         """Check every field."""
-        for name in ("wingbeats", "rows", "steps", "minibatch", "epochs", "memory", "width", "layers", "threads"):
-            require_count(name, getattr(self, name))
+        require_counts(
+            self, "wingbeats", "rows", "steps", "minibatch", "epochs", "memory", "width", "layers", "threads"
+        )
+        require_an_update(self.wingbeats, self.rows * self.steps, "rows x steps")
         for name in ("learning_rate", "clip_range", "target_kl", "gradient_norm"):
             require_scalar(name, getattr(self, name), 0.0, open_low=True)
         require_scalar("log_std", self.log_std, -20.0, 0.0)

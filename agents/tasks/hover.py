@@ -37,6 +37,10 @@ class HoverTask:
         """Resolve insects and problem, which may be dicts as from config.json."""
         object.__setattr__(self, "insects", listed_insects(self.insects))
         object.__setattr__(self, "problem", as_problem(self.problem))
+        if self.problem.model.accounting == "positive":
+            light = [insect.name for insect in self.insects if insect.wing.mass is None]
+            if light:
+                raise ValueError(f"problem = {self.problem.name!r} needs wing masses, which {', '.join(light)} lack")
 
     def vector_env(self, rows: int) -> HoverVectorEnv:
         """The environment to train in."""

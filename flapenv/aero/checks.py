@@ -146,15 +146,16 @@ def is_single(value: Any) -> bool:
     return not hasattr(value, "shape") or np.ndim(value) == 0
 
 
-def require_count(field: str, value: object, low: int = 1) -> int:
-    """`value` as an int of at least `low`.
+def require_count(field: str, value: object, low: int = 1, high: int | None = None) -> int:
+    """`value` as an int of at least `low` and, where there is a `high`, at most that.
 
     Raises:
         TypeError: if it is not a whole number.
-        ValueError: if it is below `low`.
+        ValueError: if it is out of range.
     """
+    where = f"whole numbers from {low}" if high is None else f"whole numbers from {low} to {high}"
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{field} = {value!r} is not a whole number; allowed: whole numbers from {low}")
-    if value < low:
-        raise ValueError(f"{field} = {value} is not allowed; allowed: whole numbers from {low}")
+        raise TypeError(f"{field} = {value!r} is not a whole number; allowed: {where}")
+    if value < low or (high is not None and value > high):
+        raise ValueError(f"{field} = {value} is not allowed; allowed: {where}")
     return int(value)

@@ -49,4 +49,13 @@ def test_json_is_readable_and_refuses_nan(tmp_path: Path) -> None:
 
 
 def test_versions_name_all_a_result_depends_on() -> None:
-    assert set(versions()) == {"python", "flapenv", "gymnasium", "numpy", "scipy", "stable-baselines3", "torch"}
+    assert set(versions()) == {
+        "python",
+        "flapenv",
+        "gymnasium",
+        "numpy",
+        "scipy",
+        "sb3-contrib",
+        "stable-baselines3",
+        "torch",
+    }

@@ -56,6 +56,30 @@ def test_ctrl_c_while_everything_is_being_loaded_is_one_line(tmp_path: Path) -> 
         assert "Traceback" not in err or process.returncode != 130
 
 
+def test_a_command_that_does_not_exist_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert train.main(["evalute", "hover"]) == 2
+    assert "did you mean 'evaluate'?" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [("--seed", "a"), ("--wingbeats", "1e6"), ("--out", ""), ("--sed", "1")])
+def test_what_the_parser_refuses_is_one_line_too(
+    arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as end:
+        train.main(list(arguments))
+    assert end.value.code == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+
+
+def test_training_that_destroys_itself_says_so_and_keeps_no_policy(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = ["--insects", "hawkmoth", "--wingbeats", "4096", "--set", "learning_rate=1e308", "--quiet"]
+    assert train.main([*asked, "--out", str(tmp_path / "run")]) == 1
+    assert "training diverged" in capsys.readouterr().err
+    assert not (tmp_path / "run" / "policy.safetensors").exists()
+
+
 def test_a_mistake_on_the_command_line_ends_the_program_with_code_2(tmp_path: Path) -> None:
     process = command("--preset", "hover-pp", "--out", str(tmp_path / "run"))
     _, err = process.communicate(timeout=60)
@@ -87,6 +111,16 @@ CONFIG = {"task": {"name": "hover"}, "algorithm": "PPO", "settings": {"wingbeats
             "has no argument 'insects'",
         ),
         (("--config", "nowhere.json"), "nowhere.json"),
+        (("--preset", ""), "preset = '' is unknown"),
+        (("--wingbeats", "1"), "allowed: at least one update, rows x steps = 2048"),
+        (("--algorithm", "sac", "--wingbeats", "1000"), "more than learning_starts = 2000"),
+        (("--set", "minibatch=1"), "minibatch = 1"),
+        (("--set", "threads=100000"), "threads = 100000"),
+        (("--set", "layers=1000000"), "layers = 1000000"),
+        (("--set", "rows=99999999999999999999"), "rows = 99999999999999999999"),
+        (("--set", "first_mean=3"), "first_mean = 3"),
+        (("--set", f"rows={'[' * 100_000}"), "rows = "),
+        (("--problem", "inertial"), "needs wing masses, which honeybee"),
     ],
 )
 def test_bad_input_is_one_line_and_exit_code_2(
@@ -110,6 +144,16 @@ def test_bad_input_is_one_line_and_exit_code_2(
         (json.dumps({**CONFIG, "task": {"name": "hoover"}}), "did you mean 'hover'?"),
         (json.dumps({**CONFIG, "task": {"name": "hover", "insect": ["hawkmoth"]}}), "did you mean 'insects'?"),
         (json.dumps({**CONFIG, "algorithm": "PP0"}), "did you mean 'PPO'?"),
+        (json.dumps({**CONFIG, "preset": 3}), "name = 3"),
+        (json.dumps({**CONFIG, "preset": "../escaped"}), "name = '../escaped'"),
+        (json.dumps({**CONFIG, "seed": "a"}), "seed = 'a'"),
+        (json.dumps({**CONFIG, "settings": None}), "settings = None"),
+        (json.dumps({**CONFIG, "settings": {"rows": True}}), "rows = True"),
+        (json.dumps({**CONFIG, "settings": {"learning_rate": float("nan")}}), "learning_rate"),
+        (json.dumps({**CONFIG, "task": {"name": "hover", "insects": {}}}), "Insect needs name"),
+        (json.dumps({**CONFIG, "environment": 5}), "environment = 5"),
+        (json.dumps({**CONFIG, "task": {"name": "hover", "problem": {"name": "\ud800"}}}), "surrogates"),
+        ("[" * 100_000, "is not JSON that can be read"),
     ],
 )
 def test_a_config_file_with_a_mistake_is_one_line(
@@ -144,4 +188,7 @@ def test_help_teaches_and_the_list_names_every_preset() -> None:
 
 def test_the_card_tells_the_command_without_where_it_is_kept(tmp_path: Path) -> None:
     asked = ["--seed", "3", "--out", str(tmp_path), "--quiet", f"--out={tmp_path}", "--insects", "hawkmoth"]
-    assert what_counts(asked) == ["--seed", "3", "--insects", "hawkmoth"]
+    assert what_counts([*asked, "--config", str(tmp_path / "c.json")]) == [
+        *("--seed", "3", "--insects", "hawkmoth"),
+        *("--config", "c.json"),
+    ]

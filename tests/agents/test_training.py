@@ -74,7 +74,8 @@ def test_the_same_seed_learns_the_same_and_what_is_saved_is_the_last_policy(tmp_
     for name, entry in verdict.results["insects"].items():
         assert entry["stroke"] == pytest.approx(strokes(tmp_path / "a")[name], rel=1e-5)
     assert card.seed == 1
-    assert card.command == "python train.py --preset hover-ppo --seed 1"
+    assert card.command == ""  # no command makes this preset
+    assert TrainingConfig(seed=1).command == "python train.py --preset hover-ppo --seed 1"
     assert card.result["mean"] == pytest.approx(verdict.mean, rel=1e-3)
     zipped = PPO.load(tmp_path / "a" / "policy.zip", device="cpu")
     assert HoverTask().judge(zipped).mean == pytest.approx(verdict.mean, rel=1e-3)
@@ -118,6 +119,9 @@ def test_a_budget_of_one_update_learns_something_and_writes_one_point(tmp_path: 
         ({"preset": "hover-pp0"}, ValueError, "did you mean 'hover-ppo'"),
         ({"presets": "hover-ppo"}, TypeError, "did you mean 'preset'"),
         ({"seed": -1}, ValueError, "seed = -1"),
+        ({"name": 3}, TypeError, "name = 3"),
+        ({"name": "a/b"}, ValueError, "name = 'a/b'"),
+        ({"command": ["x"]}, TypeError, "command = "),
     ],
 )
 def test_bad_configurations_are_named(fields: dict[str, object], kind: type[Exception], said: str) -> None:
