@@ -159,10 +159,10 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         if interrupted:
             print(f"stopped after {model.num_timesteps:,} wingbeats; keeping what was learned", file=sys.stderr)
         _require_finite(model)
+        curve.measure()
         checkpoints.init_callback(model)
         checkpoints.save()
         save_actor(config, model, out, {"mean": None, "worst": None})
-    curve.measure()
     result = TrainingResult(
         out=out,
         verdict=task.judge(flown(model)),

@@ -165,7 +165,12 @@ PRESETS = {
     "random-wings-ppo": Preset(
         task="random-wings",
         settings=PPOSettings(
-            wingbeats=3_000_000, layers=3, activation="silu", learning_rate_ratio=0.005, floor_until=0.9
+            wingbeats=3_000_000,
+            layers=3,
+            activation="silu",
+            learning_rate_ratio=0.005,
+            last_noise_floor=-8.0,
+            floor_until=0.9,
         ),
     ),
     "adapt-ppo": Preset(
