@@ -52,13 +52,13 @@ class PPOSettings:
 
     algorithm: ClassVar[str] = "PPO"
 
-    wingbeats: int = 2_000_000
+    wingbeats: int = 2_500_000
     rows: int = 2_048
     steps: int = 1
     minibatch: int = 512
     epochs: int = 8
     learning_rate: float = 3e-3
-    learning_rate_ratio: float = 0.02
+    learning_rate_ratio: float = 0.005
     learning_rate_power: float = 1.0
     clip_range: float = 0.2
     target_kl: float = 0.2
@@ -68,8 +68,8 @@ class PPOSettings:
     activation: str = "relu"
     log_std: float = -0.5
     noise_floor: float = -3.5
-    last_noise_floor: float = -8.0
-    floor_until: float = 1.0
+    last_noise_floor: float = -8.5
+    floor_until: float = 0.9
     gamma: float = 1.0
     gae_lambda: float = 1.0
     reward_scale: float = 1.0
