@@ -3,6 +3,8 @@
 import csv
 import json
 import math
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,7 @@ from agents.benchmark_command import benchmark_command
 from agents.benchmark_data import (
     CURVE_POINTS,
     CURVES_TABLE,
+    INSECTS_TABLE,
     RUNS_TABLE,
     THRESHOLDS,
     BenchmarkData,
@@ -56,6 +59,7 @@ def make_run(folder: Path, preset: str, seed: int) -> None:
         "verdict": {"mean": final, "worst": 3 * abs(final), "distance": "gap to the optimum"},
         "wingbeats": 1000 * FULL_POINTS,
         "seconds": 100.0,
+        "interrupted": False,
     }
     if preset.startswith("hover"):
         results["insects"] = {
@@ -240,3 +244,78 @@ def test_every_machine_that_ran_some_of_it_is_told(tmp_path: Path) -> None:
     first, second = machine_text(read_machines(tmp_path)).splitlines()
     assert "2 runs at a time, one thread each; python 3." in first
     assert "1 run at a time" in second
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "{}",
+        "[]",
+        "3",
+        '{"machines": 3}',
+        '{"machines": [{}]}',
+        '{"machines": [3]}',
+        '{"machines": [{"cpu": "", "architecture": "", "system": "", "cores": 1, "runs_at_a_time": 2, "versions": 3}]}',
+    ],
+)
+def test_a_file_of_machines_that_was_tampered_with_is_named(
+    content: str, data: BenchmarkData, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    save(data, tmp_path)
+    (tmp_path / MACHINE).write_text(content, encoding="utf-8")
+    assert benchmark_command(["--report", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert str(tmp_path / MACHINE) in said
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "insects",
+    [[], 3, {"a": 3}, {"a": {}}, {"a": {"gap_percent": "much"}}, {"a": {"gap_percent": []}}],
+)
+def test_results_with_other_insects_are_named(insects: object, tmp_path: Path) -> None:
+    make_run(tmp_path / "run", "hover-ppo", 0)
+    path = tmp_path / "run" / "results.json"
+    path.write_text(json.dumps({**json.loads(path.read_text(encoding="utf-8")), "insects": insects}), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"results.json is not a run's: "):
+        collect({("hover-ppo", 0): tmp_path / "run"})
+
+
+def test_a_curve_that_was_tampered_with_is_named(tmp_path: Path) -> None:
+    make_run(tmp_path / "run", "hover-ppo", 0)
+    path = tmp_path / "run" / "curve.csv"
+    text = path.read_text(encoding="utf-8")
+    for changed in (text.replace("mean_gap", "gap"), text.replace("2000,1.0", "2000,soon"), text[:-5] + "nan"):
+        assert changed != text
+        path.write_text(changed, encoding="utf-8")
+        with pytest.raises(ValueError, match=r"curve.csv, line \d+: "):
+            collect({("hover-ppo", 0): tmp_path / "run"})
+
+
+@pytest.mark.parametrize(
+    ("table", "change", "said"),
+    [
+        (RUNS_TABLE, lambda text: "", "runs.csv has columns None"),
+        (RUNS_TABLE, lambda text: text.splitlines()[0], "runs.csv has no run"),
+        (RUNS_TABLE, lambda text: text.replace(text.splitlines()[1].split(",")[4], "nan"), "line 2: .*mean = nan"),
+        (RUNS_TABLE, lambda text: text + text.splitlines()[1], "runs.csv has hover-ppo, seed 0, more than once"),
+        (RUNS_TABLE, lambda text: text.replace("hover-ppo,0,", "hover-ppo,-1,"), "line 2: .*seed = -1"),
+        (RUNS_TABLE, lambda text: text.replace("\n", ",more\n").replace(",more", "", 1), "runs.csv, line 2: "),
+        (INSECTS_TABLE, lambda text: text.replace("hawkmoth,", "hawkmoth,inf\n", 1), "line 2: .*gap = inf"),
+        (CURVES_TABLE, lambda text: text.replace(",1000,", ",1e9999,", 1), "curves.csv, line 2: "),
+        (CURVES_TABLE, lambda text: "\xff" + text, "curves.csv is no table: "),
+    ],
+)
+def test_kept_tables_that_were_tampered_with_are_one_line(
+    table: str,
+    change: Callable[[str], str],
+    said: str,
+    data: BenchmarkData,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    save(data, tmp_path)
+    text = (tmp_path / table).read_text(encoding="utf-8")
+    (tmp_path / table).write_text(change(text), encoding="latin-1")
+    assert benchmark_command(["--report", str(tmp_path)]) == 2
+    assert re.fullmatch(f"train.py benchmark: .*{said}.*\n", capsys.readouterr().err)
