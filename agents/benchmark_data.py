@@ -180,7 +180,7 @@ def collect(folders: Mapping[tuple[str, int], Path]) -> BenchmarkData:
             insects += [
                 InsectRow(preset=preset, seed=seed, insect=name, gap=one["gap_percent"] / 100)
                 for name, one in results.get("insects", {}).items()
-                if one["gap_percent"] is not None  # one that cannot hover has no gap
+                if one.get("gap_percent") is not None  # one that cannot hover has no gap, nor have other tasks
             ]
         except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as mistake:
             raise ValueError(f"{folder / RESULTS} is not a run's: {type(mistake).__name__} {mistake}") from None

@@ -72,9 +72,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--insects", nargs="+", default=list(INSECTS), metavar="NAME", help="default: all eight")
     made.add_argument("--preset", default=PRESET, metavar="NAME", help=f"of random wings (default {PRESET})")
     made.add_argument("--seed", type=int, default=0, metavar="N", help="of every run (default 0)")
-    made.add_argument(
-        "--jobs", type=int, default=2, metavar="N", help="runs at a time, one thread each (default 2)"
-    )
+    made.add_argument("--jobs", type=int, default=2, metavar="N", help="runs at a time, one thread each (default 2)")
     made.add_argument("--root", type=Path, default=ROOT, metavar="DIR", help=f"folder of the runs (default {ROOT}/)")
     return made
 

@@ -271,7 +271,7 @@ def test_a_file_of_machines_that_was_tampered_with_is_named(
 
 @pytest.mark.parametrize(
     "insects",
-    [[], 3, {"a": 3}, {"a": {}}, {"a": {"gap_percent": "much"}}, {"a": {"gap_percent": []}}],
+    [[], 3, {"a": 3}, {"a": {"gap_percent": "much"}}, {"a": {"gap_percent": []}}],
 )
 def test_results_with_other_insects_are_named(insects: object, tmp_path: Path) -> None:
     make_run(tmp_path / "run", "hover-ppo", 0)
@@ -319,3 +319,11 @@ def test_kept_tables_that_were_tampered_with_are_one_line(
     (tmp_path / table).write_text(change(text), encoding="latin-1")
     assert benchmark_command(["--report", str(tmp_path)]) == 2
     assert re.fullmatch(f"train.py benchmark: .*{said}.*\n", capsys.readouterr().err)
+
+
+def test_insects_of_tasks_without_a_gap_have_no_line(tmp_path: Path) -> None:
+    make_run(tmp_path / "run", "hover-ppo", 0)
+    path = tmp_path / "run" / "results.json"
+    results = {**json.loads(path.read_text(encoding="utf-8")), "insects": {"hawkmoth": {"mean_extra_power": 0.1}}}
+    path.write_text(json.dumps(results), encoding="utf-8")
+    assert collect({("adapt-ppo", 0): tmp_path / "run"}).insects == []
