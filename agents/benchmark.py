@@ -1,29 +1,15 @@
-"""The benchmark: every preset with every seed, a process each, a few at a time; what is finished is never redone.
+"""The benchmark: every learner on the eight insects, and every other task, with several seeds."""
 
-A run is made in `NAME-seedN.part` and renamed when it has ended well, so that it is there whole or not at all.
-"""
-
-import json
-import shutil
-import signal
-import sys
-import textwrap
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
-from tqdm import tqdm
-
-from agents.folder_lock import locked
-from agents.machine import note_machine
-from agents.run_folder import CONFIG, RESULTS, RUNS, write_json
-from agents.subprocesses import ERRORS, Command, run_all
+from agents.run_folder import RUNS
+from agents.run_queue import CommandOf, Outcome, train_all
+from agents.training_run import Run, is_there, registered, run_command
 from flapenv.aero.checks import record, require_count, require_name
 
-if TYPE_CHECKING:
-    from agents.presets import Preset
-
-PRESETS = (
+BENCHMARKED = (
     "hover-ppo",
     "hover-sac",
     "hover-td3",
@@ -36,45 +22,9 @@ PRESETS = (
     "waveform-ppo",
     "heave-ppo",
 )
-"""Every learner on Hover-v0's problem A, and the best preset of every other task."""
+"""Every learner on the eight insects, and the presets of every other task that learn from rewards; of the presets of
+`agents.presets.PRESETS` those that are trained unless others are asked for."""
 ROOT = RUNS / "benchmark"
-COMMAND = "command.json"
-"""The command of a run, which marks its folder as the benchmark's own."""
-TRAIN = Path(__file__).parents[1] / "train.py"
-
-
-def registered() -> "Mapping[str, Preset]":
-    """The named presets, imported when first needed: help and reports do without them."""
-    from agents import presets
-
-    return presets.PRESETS
-
-
-@record
-class Run:
-    """One training run.
-
-    Attributes:
-        preset: its name.
-        seed: its seed.
-        wingbeats: its budget; None for the preset's own.
-    """
-
-    preset: str
-    seed: int
-    wingbeats: int | None = None
-
-    @property
-    def name(self) -> str:
-        """Of its folder."""
-        return f"{self.preset}-seed{self.seed}"
-
-    def described(self) -> dict[str, Any]:
-        """What config.json must say of it."""
-        budget = {} if self.wingbeats is None else {"wingbeats": self.wingbeats}
-        preset = registered()[self.preset].changed({}, budget)
-        described: dict[str, Any] = {"preset": self.preset, "seed": self.seed, **preset.to_dict()}
-        return dict(json.loads(json.dumps(described)))  # tuples become lists, as in the file
 
 
 @record
@@ -88,7 +38,7 @@ class BenchmarkConfig:
         wingbeats: budget of every run instead of the presets' own, to try the benchmark out; None for theirs.
     """
 
-    presets: Sequence[str] = PRESETS
+    presets: Sequence[str] = BENCHMARKED
     seeds: int = 5
     jobs: int = 2
     wingbeats: int | None = None
@@ -119,143 +69,36 @@ class BenchmarkConfig:
         ]
 
 
-@record
-class BenchmarkOutcome:
-    """How it ended.
-
-    Attributes:
-        finished: runs that are there, those of earlier times too.
-        failed: name of each failed run and why.
-        interrupted: whether it was stopped before all runs had ended.
-    """
-
-    finished: Sequence[Run]
-    failed: Mapping[str, str]
-    interrupted: bool
-
-
-def train_command(run: Run, out: Path) -> list[str]:
-    """The command line of a run into the folder `out`."""
-    budget = [] if run.wingbeats is None else ["--wingbeats", str(run.wingbeats)]
-    base = [sys.executable, str(TRAIN), "--preset", run.preset, "--seed", str(run.seed), "--out", str(out), "--quiet"]
-    return base + budget
-
-
 def run_benchmark(
-    config: BenchmarkConfig,
-    root: Path = ROOT,
-    *,
-    command: Callable[[Run, Path], Sequence[str]] = train_command,
-    progress: bool = True,
-) -> BenchmarkOutcome:
-    """Run what is not there yet. Ctrl-C ends the runs under way and keeps the finished ones.
+    config: BenchmarkConfig, root: Path = ROOT, *, command: CommandOf = run_command, progress: bool = True
+) -> Outcome:
+    """Run what is not there yet; arguments, errors and Ctrl-C as those of `train_all`."""
+    return train_all(config.runs(), root, config.jobs, command=command, progress=progress)
+
+
+def finished_runs(root: Path, wingbeats: int | None = None) -> tuple[list[Run], Mapping[str, str]]:
+    """All finished runs of registered presets in a folder, whoever asked for them.
 
     Args:
-        config: what to run.
         root: folder of the run folders.
-        command: the command line of a run into a folder.
-        progress: whether to show a progress bar.
+        wingbeats: their budget; None for the presets' own.
 
-    Raises:
-        BlockingIOError: if another benchmark runs into the same folder.
-        ValueError: if a run there was made with other settings.
-        FileExistsError: if a folder is in the way that no benchmark made.
-        OSError: if the folder cannot be written, or a process not started.
+    Returns:
+        The runs, presets in the order of `BENCHMARKED` and then of the registry; and why each other folder that is
+        called like a run was left out, by its name.
     """
-    root.mkdir(parents=True, exist_ok=True)
-    with locked(root) as lock:
-        runs = config.runs()
-        there = [run for run in runs if _is_there(run, root)]
-        for run in runs:
-            _clear(root / f"{run.name}.part")
-        todo = {run.name: run for run in runs if run not in there}
-        failed: dict[str, str] = {}
-        if todo:
-            note_machine(root, config.jobs)
-        with tqdm(total=len(runs), initial=len(there), disable=not progress, unit="run", file=sys.stderr) as bar:
-
-            def ended(over: Command, code: int) -> None:
-                bar.update()
-                why = _failure(over.folder, code)
-                if why is None:
-                    over.folder.rename(root / over.name)
-                    there.append(todo[over.name])
-                else:
-                    failed[over.name] = why
-                    bar.write(f"{over.name} failed: {why}", file=sys.stderr)
-
-            completed = run_all(
-                (_prepared(run, root, command) for run in todo.values()),
-                config.jobs,
-                changed=lambda names: bar.set_postfix_str(", ".join(names)),
-                ended=ended,
-                inherited=lock,
-            )
-    return BenchmarkOutcome(
-        finished=[run for run in runs if run in there],
-        failed={run.name: failed[run.name] for run in runs if run.name in failed},
-        interrupted=not completed,
-    )
-
-
-def _is_there(run: Run, root: Path) -> bool:
-    """Whether a run has been finished, with the same settings."""
-    folder = root / run.name
-    if not folder.exists():
-        return False
-    missing = [name for name in (CONFIG, RESULTS) if not (folder / name).is_file()]
-    if missing:
-        raise FileExistsError(f"{folder} is in the way: it holds no {' and no '.join(missing)}; allowed: finished runs")
-    found = json.loads((folder / CONFIG).read_text(encoding="utf-8"))
-    differs = differences(run.described(), found)
-    if differs:
-        raise ValueError(
-            f"{folder} was made with other settings: {'; '.join(differs)}; allowed: the same, or another folder"
-        )
-    return True
-
-
-def differences(wanted: Mapping[str, Any], found: Mapping[str, Any], within: str = "") -> list[str]:
-    """What `found` says otherwise than `wanted`, in words; what it says beside that does not count."""
-    said: list[str] = []
-    for key, value in wanted.items():
-        name = f"{within}{key}"
-        if isinstance(value, Mapping) and isinstance(found.get(key), Mapping):
-            said += differences(value, found[key], f"{name}.")
-        elif key not in found:
-            said.append(f"{name} is missing there, wanted {_short(value)}")
-        elif found[key] != value:
-            said.append(f"{name} = {_short(found[key])} there, wanted {_short(value)}")
-    return said
-
-
-def _short(value: object) -> str:
-    """A value as an error can show it."""
-    return textwrap.shorten(repr(value), 80, placeholder=" ...")
-
-
-def _clear(part: Path) -> None:
-    """Remove what an interrupted or failed run left."""
-    if not part.exists():
-        return
-    if not (part / COMMAND).is_file() and any(part.iterdir()):
-        raise FileExistsError(f"{part} is in the way: no benchmark made it; allowed: another folder, or move it")
-    shutil.rmtree(part)
-
-
-def _prepared(run: Run, root: Path, command: Callable[[Run, Path], Sequence[str]]) -> Command:
-    """The run's command, with a folder to run into that is marked as the benchmark's own."""
-    part = root / f"{run.name}.part"
-    arguments = list(command(run, part))
-    part.mkdir()
-    write_json(part / COMMAND, {"command": arguments})
-    return Command(name=run.name, arguments=arguments, folder=part)
-
-
-def _failure(part: Path, code: int) -> str | None:
-    """Why a run that ended with this exit code failed; None if it did not."""
-    if code == 0:
-        return None if (part / RESULTS).is_file() else f"it ended without {RESULTS}; see {part}"
-    how = f"exit code {code}" if code > 0 else f"killed by {signal.Signals(-code).name}"
-    said = (part / ERRORS).read_text(encoding="utf-8", errors="replace").strip().splitlines()
-    return f"{said[-1].strip() if said else 'it said nothing'} ({how}; see {part / ERRORS})"
+    known = list(dict.fromkeys([name for name in BENCHMARKED if name in registered()] + list(registered())))
+    called = (re.fullmatch(r"(.+)-seed(0|[1-9][0-9]*)", path.name) for path in root.iterdir() if path.is_dir())
+    candidates = [
+        Run(preset=match[1], seed=int(match[2]), wingbeats=wingbeats) for match in called if match and match[1] in known
+    ]
+    runs, left_out = list[Run](), dict[str, str]()
+    for run in sorted(candidates, key=lambda one: (known.index(one.preset), one.seed)):
+        try:
+            if is_there(run, root):
+                runs.append(run)
+            else:
+                left_out[run.name] = f"{root / run.name} was cut short"
+        except (ValueError, TypeError, OSError) as why:
+            left_out[run.name] = str(why)
+    return runs, left_out

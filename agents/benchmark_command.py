@@ -1,14 +1,16 @@
 """`python train.py benchmark`: its arguments, and what it prints."""
 
 import argparse
+import os
 import sys
-from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from agents.benchmark import PRESETS, ROOT, BenchmarkConfig, BenchmarkOutcome, Run, run_benchmark, train_command
+from agents.benchmark import BENCHMARKED, ROOT, BenchmarkConfig, finished_runs, run_benchmark
 from agents.benchmark_data import collect, load, save
 from agents.benchmark_report import text_report, write_report
 from agents.machine import machine_text, read_machines, write_machines
+from agents.run_queue import CommandOf, Outcome
+from agents.training_run import run_command
 
 
 def benchmark_parser() -> argparse.ArgumentParser:
@@ -23,19 +25,26 @@ def benchmark_parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog=(
             "examples:\n"
-            "  python train.py benchmark                                    everything: hours\n"
+            "  python train.py benchmark                        everything: one to two hours on two cores\n"
             "  python train.py benchmark --presets hover-ppo hover-sac --seeds 2\n"
             "  python train.py benchmark --wingbeats 20000 --root runs/try  a rehearsal of some minutes\n"
             "  python train.py benchmark --report docs/benchmark            redraw the numbers kept there\n\n"
             "runs go into ROOT/PRESET-seedN; OUT gets the numbers (runs.csv, insects.csv, curves.csv, machine.json),\n"
             "table.txt, table.md and pictures. A run that fails is named, and ROOT/PRESET-seedN.part holds what it\n"
-            "printed; the others go on, and the command ends with 1"
+            "printed; the others go on, and the command ends with 1. Tables and pictures are of all finished runs in\n"
+            "ROOT, those of earlier benchmarks too"
         ),
     )
-    made.add_argument("--presets", nargs="+", metavar="NAME", help=f"what to train (default {' '.join(PRESETS)})")
+    made.add_argument("--presets", nargs="+", metavar="NAME", help=f"what to train (default {' '.join(BENCHMARKED)})")
     made.add_argument("--seeds", type=int, metavar="N", help=f"0 to N-1 (default {BenchmarkConfig.seeds})")
     made.add_argument(
-        "--jobs", type=int, metavar="N", help=f"runs at a time, at most one a core (default {BenchmarkConfig.jobs})"
+        "--jobs",
+        type=int,
+        metavar="N",
+        help=(
+            f"runs at a time, one thread each (default {BenchmarkConfig.jobs}); sensible is at most one a core, of "
+            f"which this computer has {os.cpu_count()}: more only slow each other down, and their seconds say less"
+        ),
     )
     made.add_argument("--wingbeats", type=int, metavar="N", help="budget of every run (default the presets' own)")
     made.add_argument("--root", type=Path, metavar="DIR", help=f"where the run folders go (default {ROOT})")
@@ -45,7 +54,7 @@ def benchmark_parser() -> argparse.ArgumentParser:
     return made
 
 
-def benchmark_command(arguments: list[str], *, command: Callable[[Run, Path], Sequence[str]] = train_command) -> int:
+def benchmark_command(arguments: list[str], *, command: CommandOf = run_command) -> int:
     """Run the benchmark, or redraw one.
 
     Args:
@@ -78,11 +87,11 @@ def benchmark_command(arguments: list[str], *, command: Callable[[Run, Path], Se
         return 2
 
 
-def _conclude(config: BenchmarkConfig, outcome: BenchmarkOutcome, root: Path, out: Path) -> int:
+def _conclude(config: BenchmarkConfig, outcome: Outcome, root: Path, out: Path) -> int:
     """Print what is there, keep it unless the benchmark was stopped, and say what is not there."""
-    total = len(config.runs())
-    if outcome.finished:
-        data = collect({(run.preset, run.seed): root / run.name for run in outcome.finished})
+    found, left_out = finished_runs(root, config.wingbeats)
+    if found:
+        data = collect({(run.preset, run.seed): root / run.name for run in found})
         machines = read_machines(root)
         if outcome.interrupted:
             print(text_report(data, machine_text(machines)))
@@ -91,6 +100,9 @@ def _conclude(config: BenchmarkConfig, outcome: BenchmarkOutcome, root: Path, ou
             write_machines(out, machines)
             print(f"{write_report(data, out)}\n\nkept in {out}")
     sys.stdout.flush()
+    for why in left_out.values():
+        print(f"train.py benchmark: left out of the tables: {why}", file=sys.stderr)
+    total = len(config.runs())
     if len(outcome.finished) < total:
         how = "stopped with" if outcome.interrupted else "ended with"
         failed = f" (failed: {', '.join(outcome.failed)})" if outcome.failed else ""

@@ -1,8 +1,8 @@
 """A benchmark's numbers as three small tables: one line a run, one an insect of a run, one a point of a curve."""
 
 import csv
-import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
@@ -10,14 +10,17 @@ from typing import Any, TypeVar, get_type_hints
 import numpy as np
 
 from agents.benchmark_statistics import first_below
+from agents.read_json import read_object
 from agents.run_folder import CURVE, RESULTS, write_atomically
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, require_scalar
 
 RUNS_TABLE, INSECTS_TABLE, CURVES_TABLE = "runs.csv", "insects.csv", "curves.csv"
 THRESHOLDS = (0.05, 0.01, 0.001)
 """Distances [-] of which the table tells when they were first reached."""
 CURVE_POINTS = 60
 """Most points kept of a curve."""
+COUNTED = ("seed", "wingbeats", "seconds")
+"""Fields that are never negative."""
 Row = TypeVar("Row")
 
 
@@ -45,6 +48,11 @@ class RunRow:
     wingbeats: int
     seconds: float
 
+    def __post_init__(self) -> None:
+        """Refuse what no table can tell."""
+        _require_texts(self, "preset", "environment", "distance")
+        _require_numbers(self, "seed", "mean", "worst", "wingbeats", "seconds")
+
 
 @record
 class InsectRow:
@@ -61,6 +69,11 @@ class InsectRow:
     seed: int
     insect: str
     gap: float
+
+    def __post_init__(self) -> None:
+        """Refuse what no table can tell."""
+        _require_texts(self, "preset", "insect")
+        _require_numbers(self, "seed", "gap")
 
 
 @record
@@ -82,6 +95,23 @@ class CurvePoint:
     seconds: float
     mean: float
     worst: float
+
+    def __post_init__(self) -> None:
+        """Refuse what no picture can show."""
+        _require_numbers(self, "seed", "wingbeats", "seconds", "mean", "worst")
+
+
+def _require_texts(row: object, *names: str) -> None:
+    """Refuse fields that are not text."""
+    for name in names:
+        if not isinstance(getattr(row, name), str):
+            raise TypeError(f"{name} = {getattr(row, name)!r} is not allowed; allowed: a text")
+
+
+def _require_numbers(row: object, *names: str) -> None:
+    """Refuse fields that are not finite numbers, or negative where that means nothing."""
+    for name in names:
+        require_scalar(name, getattr(row, name), 0.0 if name in COUNTED else -np.inf)
 
 
 @record
@@ -128,11 +158,11 @@ def collect(folders: Mapping[tuple[str, int], Path]) -> BenchmarkData:
 
     Raises:
         OSError: if a file cannot be read.
-        ValueError: if results.json lacks something, or a distance that is a number.
+        ValueError: if a file is not as a run writes it; names it.
     """
     runs, insects, curves = list[RunRow](), list[InsectRow](), list[CurvePoint]()
     for (preset, seed), folder in folders.items():
-        results = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
+        results = read_object(folder / RESULTS)
         try:
             verdict = results["verdict"]
             runs.append(
@@ -147,13 +177,13 @@ def collect(folders: Mapping[tuple[str, int], Path]) -> BenchmarkData:
                     seconds=float(results["seconds"]),
                 )
             )
-        except (KeyError, TypeError) as mistake:
+            insects += [
+                InsectRow(preset=preset, seed=seed, insect=name, gap=one["gap_percent"] / 100)
+                for name, one in results.get("insects", {}).items()
+                if one.get("gap_percent") is not None  # one that cannot hover has no gap, nor have other tasks
+            ]
+        except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as mistake:
             raise ValueError(f"{folder / RESULTS} is not a run's: {type(mistake).__name__} {mistake}") from None
-        insects += [
-            InsectRow(preset=preset, seed=seed, insect=name, gap=one["gap_percent"] / 100)
-            for name, one in results.get("insects", {}).items()
-            if one.get("gap_percent") is not None  # one that cannot hover has no gap
-        ]
         curves += thinned(_curve(preset, seed, folder / CURVE))
     return BenchmarkData(runs=runs, insects=insects, curves=curves)
 
@@ -162,18 +192,18 @@ def _curve(preset: str, seed: int, path: Path) -> list[CurvePoint]:
     """A run's learning curve; empty where it kept none."""
     if not path.is_file():
         return []
-    with path.open(encoding="utf-8", newline="") as file:
-        return [
-            CurvePoint(
-                preset=preset,
-                seed=seed,
-                wingbeats=int(float(row["wingbeats"])),
-                seconds=float(row["seconds"]),
-                mean=float(row["mean_gap"]),
-                worst=float(row["worst_gap"]),
-            )
-            for row in csv.DictReader(file)
-        ]
+
+    def point(row: Mapping[str, str]) -> CurvePoint:
+        return CurvePoint(
+            preset=preset,
+            seed=seed,
+            wingbeats=int(float(row["wingbeats"])),
+            seconds=float(row["seconds"]),
+            mean=float(row["mean_gap"]),
+            worst=float(row["worst_gap"]),
+        )
+
+    return _lines(path, point)
 
 
 def thinned(points: Sequence[CurvePoint]) -> list[CurvePoint]:
@@ -211,9 +241,12 @@ def load(folder: Path) -> BenchmarkData:
         insects=_read(folder / INSECTS_TABLE, InsectRow),
         curves=_read(folder / CURVES_TABLE, CurvePoint),
     )
-    known = {(run.preset, run.seed) for run in data.runs}
+    counts = Counter((run.preset, run.seed) for run in data.runs)
+    twice = [f"{preset}, seed {seed}" for (preset, seed), count in counts.items() if count > 1]
+    if twice or not counts:
+        raise ValueError(f"{folder / RUNS_TABLE} has {f'{twice[0]}, more than once' if twice else 'no run'}")
     for name, rows in ((INSECTS_TABLE, data.insects), (CURVES_TABLE, data.curves)):
-        strange = next((row for row in rows if (row.preset, row.seed) not in known), None)
+        strange = next((row for row in rows if (row.preset, row.seed) not in counts), None)
         if strange is not None:
             raise ValueError(f"{folder / name} has {strange.preset}, seed {strange.seed}, which {RUNS_TABLE} lacks")
     return data
@@ -238,14 +271,26 @@ def _read(path: Path, kind: type[Row]) -> list[Row]:
     """Records from the lines of a CSV file."""
     make: Any = kind
     types: dict[str, Any] = get_type_hints(kind)
+
+    def made(values: Mapping[str, str]) -> Row:
+        row: Row = make(**{name: types[name](value) for name, value in values.items()})
+        return row
+
+    return _lines(path, made, list(types))
+
+
+def _lines(path: Path, make: Callable[[Mapping[str, str]], Row], columns: Sequence[str] | None = None) -> list[Row]:
+    """What `make` makes of the lines of a CSV file with these columns, or any; errors name file and line."""
     with path.open(encoding="utf-8", newline="") as file:
         reader = csv.DictReader(file)
-        if reader.fieldnames != list(types):
-            raise ValueError(f"{path} has columns {reader.fieldnames}; allowed: {', '.join(types)}")
         rows = []
-        for values in reader:
-            try:
-                rows.append(make(**{name: types[name](value) for name, value in values.items()}))
-            except (TypeError, ValueError, KeyError) as mistake:
-                raise ValueError(f"{path}, line {reader.line_num}: {mistake}") from None
+        try:
+            if columns is not None and reader.fieldnames != columns:
+                raise ValueError(f"{path} has columns {reader.fieldnames}; allowed: {', '.join(columns)}")
+        except (UnicodeDecodeError, csv.Error) as mistake:
+            raise ValueError(f"{path} is no table: {mistake}") from None
+        try:
+            rows += [make(values) for values in reader]
+        except (TypeError, ValueError, KeyError, OverflowError, csv.Error) as mistake:
+            raise ValueError(f"{path}, line {reader.line_num}: {type(mistake).__name__} {mistake}") from None
     return rows

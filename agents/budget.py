@@ -16,8 +16,6 @@ CARRIED = 1e-4
 """Weight support short of one by no more than this is feasible; what is missing is charged as in the environment."""
 GRADIENT_COST = 3
 """Wingbeats that one evaluation with its gradient counts: one forward, two more for the way back."""
-
-
 EXACT = 1e-9
 """Of the averages: gaps are told to a millionth, and the optimum is as exact."""
 
@@ -32,7 +30,7 @@ class Trace:
 
     Attributes:
         wingbeats: spent at each improvement.
-        seconds: spent at each improvement, of the clock that stands still while no budget runs.
+        seconds: by the clock from when the budget was made to each improvement.
         gaps: best feasible gap so far [-].
     """
 

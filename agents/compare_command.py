@@ -42,9 +42,10 @@ def parser() -> argparse.ArgumentParser:
 
 
 def compare_command(arguments: list[str]) -> int:
-    """Run the competition; 0 on success, 2 for bad input."""
+    """Run the competition; 0 on success, 2 for bad input, 130 after Ctrl-C."""
     options = parser().parse_args(arguments)
-    from agents.competition import CompetitionConfig, compete, competition_table, save, wing_table
+    from agents.competition import CompetitionConfig, compete, prepare, save
+    from agents.competition_table import competition_table, wing_table
     from agents.run_folder import open_run_folder
 
     try:
@@ -57,12 +58,13 @@ def compare_command(arguments: list[str]) -> int:
             seeds=options.seeds,
             policies=options.policy,
         )
+        prepared = prepare(config)  # what is wrong is found before a folder is made
         folder = open_run_folder(options.out, f"compare-{config.problem.name}")
-        result = compete(config, progress=not options.quiet)
+        result = compete(prepared, progress=not options.quiet)
         print(f"{competition_table(result)}\n\n{wing_table(result)}", flush=True)
         save(result, folder)
         print(f"kept in {folder}")
     except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
         print(f"train.py compare: {mistake}", file=sys.stderr)
         return 2
-    return 0
+    return 130 if result.interrupted else 0

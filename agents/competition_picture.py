@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.competition import CompetitionResult, quartiles
+from agents.competition import CompetitionResult
+from agents.competition_table import quartiles
 from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib
 
 if TYPE_CHECKING:
@@ -37,12 +38,18 @@ def draw_competition(result: CompetitionResult) -> "Figure":
                 for column in np.transpose([quartiles(traces, spent, of=of) for spent in grid])
             )
             seen = np.isfinite(middle)
+            if not np.any(seen):  # most of its searches found no stroke that carries the weight
+                continue
             axes.plot(grid[seen], middle[seen], ls=dash, color=colour, label=name)
             axes.fill_between(grid[seen], low[seen], np.minimum(high[seen], 1e4), color=colour, alpha=0.12, lw=0)
         for policy in result.policies if of == "wingbeats" else []:
             gap = 100 * float(np.median(policy.gaps))
             axes.axhline(
-                gap, color=GREY, lw=1.2, ls="--", label=f"policy, one wingbeat (trained on {policy.wingbeats:,})"
+                max(gap, LEAST_GAP / 1e2),
+                color=GREY,
+                lw=1.2,
+                ls="--",
+                label=f"policy, one wingbeat (trained on {policy.wingbeats:,})",
             )
         axes.set(xscale="log", yscale="log", xlabel=f"{of} on one wing", ylim=(1e-4, 1e3))
         axes.grid(alpha=0.25)

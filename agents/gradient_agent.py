@@ -14,10 +14,8 @@ from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
 from stable_baselines3.common.type_aliases import MaybeCallback, Schedule
 from stable_baselines3.common.vec_env import VecEnv
 
+from agents.budget import GRADIENT_COST
 from agents.policy import HoverPolicy
-
-GRADIENT_COST = 3
-"""Wingbeats that one evaluation with its gradient counts: one forward, two more for the way back."""
 
 
 class GradientAgent(BaseAlgorithm):

@@ -1,82 +1,34 @@
 """Each species left out in turn: `python -m agents.left_out` trains without its like and judges the policy on it."""
 
 import argparse
-import json
-import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from tqdm import tqdm
-
-from agents.benchmark import TRAIN
-from agents.folder_lock import locked
-from agents.presets import PRESETS
-from agents.run_folder import RESULTS, write_atomically
-from agents.subprocesses import ERRORS, Command, run_all
+from agents.read_json import read_object
+from agents.run_folder import RESULTS, RUNS, write_atomically
+from agents.run_queue import CommandOf, train_all
+from agents.training_run import Run, registered, run_command
 from flapenv.aero.checks import require_count, require_name
 from flapenv.insects import INSECTS
 from flapenv.tables import text_table
 
-ROOT = Path("runs/left-out")
+ROOT = RUNS / "left-out"
 PRESET = "random-wings-ppo"
+TASK = "random-wings"
 TABLE = "table.txt"
+NOTE = "test wings: the whole test split, those like the species included"
 
 
-def train_without(names: Sequence[str], preset: str, seed: int, root: Path, jobs: int) -> dict[str, str]:
-    """Train without each species, several at a time; runs that are there are kept.
+def runs_without(names: Sequence[str], preset: str, seed: int) -> list[Run]:
+    """A run without each species, in a folder called like it.
 
     Args:
         names: of the species.
         preset: of random wings.
         seed: of every run.
-        root: folder of the runs.
-        jobs: how many beside each other.
-
-    Returns:
-        What went wrong, by name.
-
-    Raises:
-        ValueError: for a run that is there with another preset or seed.
-        OSError: if the folder cannot be written, or is in use.
     """
-    root.mkdir(parents=True, exist_ok=True)
-    failed: dict[str, str] = {}
-    todo = [name for name in names if not _is_there(root / name, preset, seed)]
-    with locked(root) as lock, tqdm(total=len(todo), unit="run", file=sys.stderr) as bar:
-
-        def ended(over: Command, code: int) -> None:
-            bar.update()
-            if code == 0:
-                over.folder.rename(root / over.name)
-            else:
-                failed[over.name] = (over.folder / ERRORS).read_text(encoding="utf-8").strip()[-200:] or f"code {code}"
-
-        commands = []
-        for name in todo:
-            part = root / f"{name}.part"
-            shutil.rmtree(part, ignore_errors=True)
-            part.mkdir()
-            asked = ["--preset", preset, "--leave-out", name, "--seed", str(seed), "--out", str(part), "--quiet"]
-            commands.append(Command(name=name, arguments=[sys.executable, str(TRAIN), *asked], folder=part))
-        if not run_all(
-            commands, jobs, changed=lambda now: bar.set_postfix_str(", ".join(now)), ended=ended, inherited=lock
-        ):
-            raise KeyboardInterrupt
-    return failed
-
-
-def _is_there(folder: Path, preset: str, seed: int) -> bool:
-    """Whether a run has ended, with the same preset and seed."""
-    if not (folder / RESULTS).is_file():
-        return False
-    found = json.loads((folder / RESULTS).read_text(encoding="utf-8"))
-    if (found["preset"], found["seed"]) != (preset, seed):
-        raise ValueError(
-            f"{folder} was made with preset {found['preset']}, seed {found['seed']}; allowed: the same, or another "
-            "--root"
-        )
-    return True
+    return [Run(preset=preset, seed=seed, arguments={"leave_out": name}, name=name) for name in names]
 
 
 def left_out_table(root: Path, names: Sequence[str]) -> str:
@@ -84,6 +36,7 @@ def left_out_table(root: Path, names: Sequence[str]) -> str:
 
     Raises:
         OSError: for a run that is missing.
+        ValueError: for one that does not tell what the table needs.
     """
     rows: list[tuple[str, ...]] = [
         ("left out", "gap", "weight", "learned", "optimum", "test wings:", "mean", "95 %"),
@@ -91,50 +44,78 @@ def left_out_table(root: Path, names: Sequence[str]) -> str:
     ]
     gaps = []
     for name in names:
-        results = json.loads((root / name / RESULTS).read_text(encoding="utf-8"))
-        own, test = results["insects"][name], results["wings"]["test"]
-        gaps.append(own["gap_percent"])
-        rows.append(
-            (
-                name,
-                f"{own['gap_percent']:.2f}",
-                f"{own['weight_support']:.4f}",
-                f"{own['specific_power']:.2f}",
-                f"{own['optimum_specific_power']:.2f}",
-                "",
-                f"{test['mean_gap_percent']:.2f}",
-                f"{test['p95_gap_percent']:.2f}",
+        results = read_object(root / name / RESULTS)
+        try:
+            own, test = results["insects"][name], results["wings"]["test"]
+            gaps.append(float(own["gap_percent"]))
+            rows.append(
+                (
+                    name,
+                    f"{own['gap_percent']:.2f}",
+                    f"{own['weight_support']:.4f}",
+                    f"{own['specific_power']:.2f}",
+                    f"{own['optimum_specific_power']:.2f}",
+                    "",
+                    f"{test['mean_gap_percent']:.2f}",
+                    f"{test['p95_gap_percent']:.2f}",
+                )
             )
-        )
-    return f"{text_table(rows, header_rows=2)}\nmean {sum(gaps) / len(gaps):.2f} %, worst {max(gaps):.2f} %"
+        except (KeyError, TypeError, ValueError) as mistake:
+            why = f"{type(mistake).__name__} {mistake}"
+            raise ValueError(f"{root / name / RESULTS} is not that of a run without {name}: {why}") from None
+    return f"{text_table(rows, header_rows=2)}\nmean {sum(gaps) / len(gaps):.2f} %, worst {max(gaps):.2f} %\n{NOTE}"
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Train, print and keep the table; 0 on success, 1 where a run failed, 2 for bad input, 130 after Ctrl-C."""
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
     made = argparse.ArgumentParser(prog="python -m agents.left_out", description=__doc__)
     made.add_argument("--insects", nargs="+", default=list(INSECTS), metavar="NAME", help="default: all eight")
     made.add_argument("--preset", default=PRESET, metavar="NAME", help=f"of random wings (default {PRESET})")
     made.add_argument("--seed", type=int, default=0, metavar="N", help="of every run (default 0)")
-    made.add_argument("--jobs", type=int, default=2, metavar="N", help="runs beside each other (default 2)")
+    made.add_argument("--jobs", type=int, default=2, metavar="N", help="runs at a time, one thread each (default 2)")
     made.add_argument("--root", type=Path, default=ROOT, metavar="DIR", help=f"folder of the runs (default {ROOT}/)")
-    options = made.parse_args(arguments)
+    return made
+
+
+def check(options: argparse.Namespace) -> None:
+    """Refuse bad input before anything is trained.
+
+    Raises:
+        ValueError: for unknown names, a species that is named twice, or a number that is not allowed.
+    """
+    from agents.training import LAST_SEED
+
+    for name in options.insects:
+        require_name("--insects", name, INSECTS)
+        if options.insects.count(name) > 1:
+            raise ValueError(f"--insects name {name} more than once; allowed: each once")
+    require_name("--preset", options.preset, [name for name, one in registered().items() if one.task == TASK])
+    if require_count("--seed", options.seed, low=0) > LAST_SEED:
+        raise ValueError(f"--seed = {options.seed} is not allowed; allowed: whole numbers from 0 to {LAST_SEED}")
+    require_count("--jobs", options.jobs)
+
+
+def main(arguments: Sequence[str] | None = None, *, command: CommandOf = run_command) -> int:
+    """Train, print and keep the table; 0 on success, 1 where a run failed, 2 for bad input, 130 after Ctrl-C.
+
+    Args:
+        arguments: the words after the module's name.
+        command: the command line of a run into a folder.
+    """
+    options = parser().parse_args(arguments)
     try:
-        for name in options.insects:
-            require_name("--insects", name, INSECTS)
-        known = [name for name, preset in PRESETS.items() if preset.task == "random-wings"]
-        require_name("--preset", options.preset, known)
-        require_count("--seed", options.seed, low=0)
-        require_count("--jobs", options.jobs)
-        failed = train_without(options.insects, options.preset, options.seed, options.root, options.jobs)
-        if failed:
-            print("\n".join(f"without {name}: {why}" for name, why in failed.items()), file=sys.stderr)
+        check(options)
+        runs = runs_without(options.insects, options.preset, options.seed)
+        outcome = train_all(runs, options.root, options.jobs, command=command)
+        if outcome.interrupted:
+            print("stopped; runs that have ended are kept, and the same command goes on", file=sys.stderr)
+            return 130
+        if outcome.failed:
+            print(f"failed: {', '.join(outcome.failed)}; the same command goes on", file=sys.stderr)
             return 1
         table = left_out_table(options.root, options.insects)
         write_atomically(options.root / TABLE, lambda part: part.write_text(f"{table}\n", encoding="utf-8"))
         print(table)
-    except KeyboardInterrupt:
-        print("stopped; runs that have ended are kept, and the same command goes on", file=sys.stderr)
-        return 130
     except (ValueError, TypeError, OSError) as mistake:
         print(f"error: {mistake}", file=sys.stderr)
         return 2

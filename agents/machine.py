@@ -1,12 +1,12 @@
 """What a benchmark ran on: seconds mean nothing without it."""
 
-import json
 import os
 import platform
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from agents.read_json import read_object
 from agents.run_folder import versions, write_json
 
 MACHINE = "machine.json"
@@ -44,9 +44,29 @@ def write_machines(folder: Path, machines: Sequence[dict[str, Any]]) -> None:
 
 
 def read_machines(folder: Path) -> list[dict[str, Any]]:
-    """The machines that a benchmark ran on; none where none were noted."""
+    """The machines that a benchmark ran on; none where none were noted.
+
+    Raises:
+        ValueError: if the file is not as `write_machines` writes it.
+        OSError: if it cannot be read.
+    """
     path = folder / MACHINE
-    return list(json.loads(path.read_text(encoding="utf-8"))["machines"]) if path.is_file() else []
+    if not path.is_file():
+        return []
+    machines = read_object(path).get("machines")
+    if not isinstance(machines, list) or not all(map(_is_machine, machines)):
+        raise ValueError(f"{path} does not tell machines as a benchmark does; allowed: the file as it was written")
+    return machines
+
+
+def _is_machine(one: Any) -> bool:
+    """Whether `machine_text` can tell it."""
+    return (
+        isinstance(one, dict)
+        and {"cpu", "architecture", "system", "cores"} <= set(one)
+        and isinstance(one.get("runs_at_a_time"), int)
+        and isinstance(one.get("versions"), dict)
+    )
 
 
 def machine_text(machines: Sequence[dict[str, Any]]) -> str:

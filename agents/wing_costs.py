@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from agents.budget import Budget
-from agents.competition import median_to_solve
+from agents.competition_table import median_to_solve
 from agents.competitors import load_libraries, run
 from agents.predictor import Predictor, begin
 from flapenv.aero.checks import record
@@ -32,14 +32,14 @@ class WingCost:
     Attributes:
         name: what answers.
         wings: answered at once.
-        wingbeats: evaluations of the model for one wing; None where it is no search.
-        seconds: for one wing [s].
+        wingbeats: evaluations of the model for one wing; None where it is no search, or most searches missed.
+        seconds: for one wing [s]; None where most searches missed.
     """
 
     name: str
     wings: int
     wingbeats: float | None
-    seconds: float
+    seconds: float | None
 
 
 def wing_costs(policy: Predictor, problem: HoverProblem, seed: int = 0) -> list[WingCost]:
@@ -48,7 +48,7 @@ def wing_costs(policy: Predictor, problem: HoverProblem, seed: int = 0) -> list[
     The policy's time is that of its network alone, without the beat that shows what it is worth. The batched optimum
     is that of `many_optima`, whose curve is solved once per process and not counted. SLSQP starts afresh from random
     points until its gap to the known optimum is at most `SEARCH_GAP`, the median over wings; without knowing the
-    optimum it could not stop there.
+    optimum it could not stop there. Where half of the searches spend their budget before that, it has no cost to tell.
 
     Args:
         policy: observations to actions.
@@ -82,7 +82,7 @@ def wing_costs(policy: Predictor, problem: HoverProblem, seed: int = 0) -> list[
         for number in range(SEARCHED):
             budget = Budget(pick(pool, number), problem, SEARCH_BUDGET)
             traces.append(run("SLSQP", budget, (seed, number)).trace)
-    wingbeats, seconds = median_to_solve(traces, SEARCH_GAP)
+    wingbeats, seconds = (number if np.isfinite(number) else None for number in median_to_solve(traces, SEARCH_GAP))
     costs.append(WingCost(name="multi-start SLSQP", wings=1, wingbeats=wingbeats, seconds=seconds))
     return costs
 
@@ -108,10 +108,16 @@ def costs_table(costs: list[WingCost], wingbeats: int) -> str:
     rows: list[tuple[str, ...]] = [("a new wing", "answered at once", "wingbeats a wing", "microseconds a wing")]
     for cost in costs:
         beats = "-" if cost.wingbeats is None else f"{cost.wingbeats:,.0f}"
-        rows.append((cost.name, f"{cost.wings:,}", beats, f"{1e6 * cost.seconds:,.3g}"))
+        seconds = "-" if cost.seconds is None else f"{1e6 * cost.seconds:,.3g}"
+        rows.append((cost.name, f"{cost.wings:,}", beats, seconds))
     search = costs[-1]
     lines = [text_table(rows)]
-    if search.wingbeats and np.isfinite(search.wingbeats):
+    if search.wingbeats is None:
+        lines.append(
+            f"{search.name}: half or more of {SEARCHED} wings did not get to a gap of {100 * SEARCH_GAP:g} % in "
+            f"{SEARCH_BUDGET:,} wingbeats"
+        )
+    elif search.wingbeats:
         wings = wingbeats / search.wingbeats
         lines.append(
             f"{search.name}: to a gap of {100 * SEARCH_GAP:g} %, median of {SEARCHED} wings; the policy's training "

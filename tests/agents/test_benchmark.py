@@ -6,69 +6,21 @@ import os
 import re
 import sys
 import time
-from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import pytest
+from pretended_runs import config, diary, faked, hover_preset
 
 import agents.presets
-from agents import benchmark, subprocesses
-from agents.benchmark import BenchmarkConfig, Run, differences, run_benchmark, train_command
+from agents import subprocesses, training_run
+from agents.benchmark import BenchmarkConfig, run_benchmark
 from agents.benchmark_command import benchmark_command
 from agents.folder_lock import LOCK, locked
 from agents.presets import Preset
-from agents.presets.ppo import PPOSettings
 from agents.run_folder import RESULTS
 from agents.subprocesses import ERRORS, PRINTED
 from agents.training import TrainingConfig
-
-FAKE = """
-import json, os, pathlib, sys, time
-out, name, seed, wingbeats, described, what = sys.argv[1:7]
-out = pathlib.Path(out)
-with open(out.parent / "diary", "a") as diary:
-    diary.write(f"begin {out.stem}\\n")
-if what == "fail":
-    print("first line", file=sys.stderr)
-    sys.exit("the wing fell off")
-if what == "die":
-    os.kill(os.getpid(), 9)
-if what == "interrupt":
-    os.kill(os.getppid(), 2)
-    time.sleep(60)
-time.sleep(0.1)
-print("trained", os.environ["OMP_NUM_THREADS"])
-(out / "config.json").write_text(described)
-lines = "wingbeats,seconds,mean_reward,mean_gap,worst_gap", "10,0.1,-2,0.5,1", "20,0.2,-1,0.004,0.01"
-(out / "curve.csv").write_text("\\n".join(lines))
-results = {
-    "preset": name, "seed": int(seed), "environment": "flapenv/Hover-v0", "wingbeats": int(wingbeats),
-    "verdict": {"mean": 0.004 + 0.001 * int(seed), "worst": 0.01, "distance": "gap to the optimum"},
-    "seconds": 0.2, "insects": {"hawkmoth": {"gap_percent": 0.4}, "cranefly": {"gap_percent": None}},
-}
-if what != "silent":
-    (out / "results.json").write_text(json.dumps(results))
-with open(out.parent / "diary", "a") as diary:
-    diary.write(f"end {out.stem}\\n")
-"""
-
-
-def hover_preset(**settings: Any) -> Preset:
-    return Preset(task="hover", settings=PPOSettings(**{"wingbeats": 20, "learning_rate": 0.1, **settings}))
-
-
-def faked(**what: str) -> Callable[[Run, Path], Sequence[str]]:
-    """Commands that pretend to train; `hover_ppo_seed0="fail"` says how that run ends."""
-
-    def command(run: Run, out: Path) -> list[str]:
-        described = run.described()
-        ending = what.get(run.name.replace("-", "_"), "well")
-        budget = str(described["settings"]["wingbeats"])
-        words = [str(out), run.preset, str(run.seed), budget, json.dumps(described), ending]
-        return [sys.executable, "-I", "-S", "-c", FAKE, *words]
-
-    return command
+from agents.training_run import Run, differences, run_command
 
 
 @pytest.fixture(autouse=True)
@@ -77,14 +29,6 @@ def presets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Preset]:
     registry = {name: hover_preset() for name in ("hover-ppo", "hover-sac", "heave-ppo")}
     monkeypatch.setattr(agents.presets, "PRESETS", registry)
     return registry
-
-
-def config(*names: str, seeds: int = 2, jobs: int = 2) -> BenchmarkConfig:
-    return BenchmarkConfig(presets=names or ("hover-ppo", "hover-sac"), seeds=seeds, jobs=jobs)
-
-
-def diary(root: Path) -> list[str]:
-    return (root / "diary").read_text().splitlines()
 
 
 def test_runs_go_two_at_a_time_with_seeds_outside_on_one_thread_each(tmp_path: Path) -> None:
@@ -200,7 +144,7 @@ def test_a_run_made_with_other_settings_is_refused(tmp_path: Path, presets: dict
 def test_folders_of_others_are_never_removed(tmp_path: Path) -> None:
     for name, said in (
         ("hover-ppo-seed0", "holds no config.json and no results.json"),
-        ("hover-ppo-seed0.part", "no bench"),
+        ("hover-ppo-seed0.part", "holds no command.json"),
     ):
         (tmp_path / name).mkdir()
         (tmp_path / name / "thesis.txt").touch()
@@ -225,13 +169,13 @@ def test_a_second_benchmark_into_the_same_folder_is_refused_until_the_first_is_g
 
 
 def test_the_command_of_a_run_is_the_one_a_reader_would_type(tmp_path: Path) -> None:
-    words = train_command(Run(preset="hover-ppo", seed=3, wingbeats=100), tmp_path)
+    words = run_command(Run(preset="hover-ppo", seed=3, wingbeats=100), tmp_path)
     assert words[0] == sys.executable
     assert Path(words[1]).name == "train.py"
     assert Path(words[1]).is_file()
-    said = f"--preset hover-ppo --seed 3 --out {tmp_path} --quiet --wingbeats 100"
+    said = f"--preset hover-ppo --seed 3 --wingbeats 100 --out {tmp_path} --quiet"
     assert " ".join(words[2:]) == said
-    assert "--wingbeats" not in train_command(Run(preset="hover-ppo", seed=3), tmp_path)
+    assert "--wingbeats" not in run_command(Run(preset="hover-ppo", seed=3), tmp_path)
 
 
 def test_a_run_is_described_as_its_config_file_describes_it() -> None:
@@ -267,4 +211,4 @@ def test_bad_input_is_one_line_and_exit_code_2(
 
 
 def test_the_registry_is_that_of_the_learners(presets: dict[str, Preset]) -> None:
-    assert benchmark.registered() is presets
+    assert training_run.registered() is presets

@@ -1,8 +1,10 @@
-"""A benchmark's statistics, tables and pictures, from invented numbers."""
+"""A benchmark's tables and pictures, from invented numbers."""
 
 import csv
 import json
 import math
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -12,26 +14,16 @@ from agents.benchmark_command import benchmark_command
 from agents.benchmark_data import (
     CURVE_POINTS,
     CURVES_TABLE,
+    INSECTS_TABLE,
     RUNS_TABLE,
-    THRESHOLDS,
     BenchmarkData,
-    CurvePoint,
     RunRow,
     collect,
     load,
     save,
-    thinned,
 )
 from agents.benchmark_pictures import CURVES_PICTURE, FINAL_PICTURE, OTHERS_PICTURE, PROFILE_PICTURE, draw_final
 from agents.benchmark_report import PAGE, TABLE, percent, reached_rows, spent_rows, text_report
-from agents.benchmark_statistics import (
-    first_below,
-    interquartile_mean,
-    interval,
-    last_known,
-    median_of_reached,
-    profile,
-)
 from agents.machine import MACHINE, machine_text, note_machine, read_machines
 
 PRESETS = {"hover-ppo": 0.001, "hover-gradient": 1e-8, "random-wings-ppo": 0.002, "heave-ppo": -0.01}
@@ -56,6 +48,7 @@ def make_run(folder: Path, preset: str, seed: int) -> None:
         "verdict": {"mean": final, "worst": 3 * abs(final), "distance": "gap to the optimum"},
         "wingbeats": 1000 * FULL_POINTS,
         "seconds": 100.0,
+        "interrupted": False,
     }
     if preset.startswith("hover"):
         results["insects"] = {
@@ -73,65 +66,6 @@ def data(tmp_path: Path) -> BenchmarkData:
     for (preset, seed), folder in folders.items():
         make_run(folder, preset, seed)
     return collect(folders)
-
-
-def test_the_interquartile_mean_is_the_mean_of_the_middle() -> None:
-    assert interquartile_mean(np.array([5.0, 1, 100, 2, 3])) == pytest.approx((2 + 3 + 5) / 3)
-    assert interquartile_mean(np.array([8.0, 1, 2, 3, 4, 5, 6, 7])) == pytest.approx((3 + 4 + 5 + 6) / 4)
-    assert interquartile_mean(np.array([1.0, 2, 6])) == pytest.approx(3)
-    assert interquartile_mean(np.array([[1.0, 5], [2, 6], [3, 7], [4, 80]]), axis=0) == pytest.approx([2.5, 6.5])
-
-
-def test_the_interval_holds_the_interquartile_mean_and_needs_two_runs(rng: np.random.Generator) -> None:
-    for size in (2, 5, 12):
-        values = rng.lognormal(size=size)
-        found = interval(values)
-        assert found is not None
-        assert values.min() <= found[0] <= interquartile_mean(values) <= found[1] <= values.max()
-        assert interval(values) == found
-    assert interval(np.array([1.0])) is None
-    assert interval(np.full(5, 0.25)) == (0.25, 0.25)
-
-
-def test_the_interval_covers_the_truth_nearly_as_often_as_it_says(rng: np.random.Generator) -> None:
-    found = [interval(rng.normal(size=40)) for _ in range(20)]
-    assert sum(one is not None and one[0] <= 0 <= one[1] for one in found) >= 17
-
-
-def test_a_profile_rises_from_none_to_all(rng: np.random.Generator) -> None:
-    values = rng.lognormal(size=30)
-    shares = profile(values, np.geomspace(values.min() / 2, values.max(), 100))
-    assert shares[0] == 0
-    assert shares[-1] == 1
-    assert np.all(np.diff(shares) >= 0)
-    assert profile(np.array([1.0, 2, 2, 4]), np.array([2.0, 1.999])).tolist() == [0.75, 0.25]
-
-
-def test_the_first_point_below_is_a_point_and_nothing_is_interpolated() -> None:
-    values = np.array([0.5, 0.06, 0.05, 0.2, 0.001])
-    assert [first_below(values, one) for one in (0.05, 0.01, 1e-4)] == [2, 4, None]
-    assert first_below(np.array([]), 1.0) is None
-    assert median_of_reached([3.0, None, 1.0, 2.0, None]) == 3.0
-    assert median_of_reached([3.0, None, None]) is None
-    steps = last_known(np.array([10.0, 20.0]), np.array([1.0, 2.0]), np.array([9.0, 10.0, 19.9, 20.0, 99.0]))
-    np.testing.assert_array_equal(steps, [np.nan, 1, 1, 2, 2])
-
-
-def test_a_thinned_curve_keeps_its_ends_and_when_each_threshold_was_first_reached(rng: np.random.Generator) -> None:
-    gaps = 2 * np.exp(-np.arange(5000) / 500) * rng.lognormal(sigma=0.5, size=5000)
-    points = [
-        CurvePoint(preset="p", seed=0, wingbeats=100 * i, seconds=i / 7, mean=float(gap), worst=float(gap))
-        for i, gap in enumerate(gaps)
-    ]
-    kept = thinned(points)
-    assert len(kept) <= CURVE_POINTS
-    assert kept[0] is points[0]
-    assert kept[-1] is points[-1]
-    for threshold in THRESHOLDS:
-        first = first_below(np.array([point.mean for point in kept]), threshold)
-        assert first is not None
-        assert kept[first] is points[first_below(gaps, threshold) or 0]
-    assert thinned(points[:20]) == points[:20]
 
 
 def test_what_is_saved_is_what_was_collected(data: BenchmarkData, tmp_path: Path) -> None:
@@ -240,3 +174,86 @@ def test_every_machine_that_ran_some_of_it_is_told(tmp_path: Path) -> None:
     first, second = machine_text(read_machines(tmp_path)).splitlines()
     assert "2 runs at a time, one thread each; python 3." in first
     assert "1 run at a time" in second
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "{}",
+        "[]",
+        "3",
+        '{"machines": 3}',
+        '{"machines": [{}]}',
+        '{"machines": [3]}',
+        '{"machines": [{"cpu": "", "architecture": "", "system": "", "cores": 1, "runs_at_a_time": 2, "versions": 3}]}',
+    ],
+)
+def test_a_file_of_machines_that_was_tampered_with_is_named(
+    content: str, data: BenchmarkData, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    save(data, tmp_path)
+    (tmp_path / MACHINE).write_text(content, encoding="utf-8")
+    assert benchmark_command(["--report", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert str(tmp_path / MACHINE) in said
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "insects",
+    [[], 3, {"a": 3}, {"a": {"gap_percent": "much"}}, {"a": {"gap_percent": []}}],
+)
+def test_results_with_other_insects_are_named(insects: object, tmp_path: Path) -> None:
+    make_run(tmp_path / "run", "hover-ppo", 0)
+    path = tmp_path / "run" / "results.json"
+    path.write_text(json.dumps({**json.loads(path.read_text(encoding="utf-8")), "insects": insects}), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"results.json is not a run's: "):
+        collect({("hover-ppo", 0): tmp_path / "run"})
+
+
+def test_a_curve_that_was_tampered_with_is_named(tmp_path: Path) -> None:
+    make_run(tmp_path / "run", "hover-ppo", 0)
+    path = tmp_path / "run" / "curve.csv"
+    text = path.read_text(encoding="utf-8")
+    for changed in (text.replace("mean_gap", "gap"), text.replace("2000,1.0", "2000,soon"), text[:-5] + "nan"):
+        assert changed != text
+        path.write_text(changed, encoding="utf-8")
+        with pytest.raises(ValueError, match=r"curve.csv, line \d+: "):
+            collect({("hover-ppo", 0): tmp_path / "run"})
+
+
+@pytest.mark.parametrize(
+    ("table", "change", "said"),
+    [
+        (RUNS_TABLE, lambda text: "", "runs.csv has columns None"),
+        (RUNS_TABLE, lambda text: text.splitlines()[0], "runs.csv has no run"),
+        (RUNS_TABLE, lambda text: text.replace(text.splitlines()[1].split(",")[4], "nan"), "line 2: .*mean = nan"),
+        (RUNS_TABLE, lambda text: text + text.splitlines()[1], "runs.csv has hover-ppo, seed 0, more than once"),
+        (RUNS_TABLE, lambda text: text.replace("hover-ppo,0,", "hover-ppo,-1,"), "line 2: .*seed = -1"),
+        (RUNS_TABLE, lambda text: text.replace("\n", ",more\n").replace(",more", "", 1), "runs.csv, line 2: "),
+        (INSECTS_TABLE, lambda text: text.replace("hawkmoth,", "hawkmoth,inf\n", 1), "line 2: .*gap = inf"),
+        (CURVES_TABLE, lambda text: text.replace(",1000,", ",1e9999,", 1), "curves.csv, line 2: "),
+        (CURVES_TABLE, lambda text: "\xff" + text, "curves.csv is no table: "),
+    ],
+)
+def test_kept_tables_that_were_tampered_with_are_one_line(
+    table: str,
+    change: Callable[[str], str],
+    said: str,
+    data: BenchmarkData,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    save(data, tmp_path)
+    text = (tmp_path / table).read_text(encoding="utf-8")
+    (tmp_path / table).write_text(change(text), encoding="latin-1")
+    assert benchmark_command(["--report", str(tmp_path)]) == 2
+    assert re.fullmatch(f"train.py benchmark: .*{said}.*\n", capsys.readouterr().err)
+
+
+def test_insects_of_tasks_without_a_gap_have_no_line(tmp_path: Path) -> None:
+    make_run(tmp_path / "run", "hover-ppo", 0)
+    path = tmp_path / "run" / "results.json"
+    results = {**json.loads(path.read_text(encoding="utf-8")), "insects": {"hawkmoth": {"mean_extra_power": 0.1}}}
+    path.write_text(json.dumps(results), encoding="utf-8")
+    assert collect({("adapt-ppo", 0): tmp_path / "run"}).insects == []
