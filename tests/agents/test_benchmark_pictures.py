@@ -1,17 +1,19 @@
 """What a benchmark's pictures draw is what the runs came to: each number where it belongs."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from agents.benchmark_data import BenchmarkData, CurvePoint, InsectRow, RunRow
 from agents.benchmark_pictures import draw_curves, draw_final, draw_others, draw_profile
 from agents.benchmark_statistics import interquartile_mean, last_known
 from flapenv.drawing import BLUE, ORANGE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 LEARNERS = ["hover-ppo", "hover-sac"]
 MEANS = {"hover-ppo": (0.001, 0.002, 0.004), "hover-sac": (0.03, 0.05, 0.08)}
@@ -40,11 +42,11 @@ def data() -> BenchmarkData:
     return BenchmarkData(runs=runs, insects=insects, curves=curves)
 
 
-def lines_labelled(figure: Figure, axes: int = 0) -> dict[str, Line2D]:
+def lines_labelled(figure: "Figure", axes: int = 0) -> dict[str, "Line2D"]:
     return {str(line.get_label()): line for line in figure.axes[axes].lines}
 
 
-def marked(figure: Figure, marker: str) -> Sequence[Line2D]:
+def marked(figure: "Figure", marker: str) -> Sequence["Line2D"]:
     return [line for line in figure.axes[0].lines if line.get_marker() == marker]
 
 
@@ -88,6 +90,6 @@ def test_other_tasks_show_the_mean_as_the_mean_and_the_worst_as_the_worst(data: 
         for name, values, colour in (("mean", MEANS, BLUE), ("worst", WORSTS, ORANGE)):
             np.testing.assert_array_equal(lines[name].get_xdata(), [0, 1, 2])
             np.testing.assert_allclose(lines[name].get_ydata(), 100 * np.array(values[preset]))
-            assert to_hex(lines[name].get_color()) == to_hex(colour)
+            assert lines[name].get_color() == colour
         dashed = next(line for line in axes.lines if line.get_linestyle() == "--")
         assert dashed.get_ydata()[0] == pytest.approx(100 * interquartile_mean(np.array(MEANS[preset])))

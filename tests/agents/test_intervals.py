@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from agents.tasks.held_out import mean_with_interval
+from agents.intervals import mean_with_interval
 
 
 def test_the_interval_of_a_mean_is_1_96_standard_errors_either_side() -> None:
