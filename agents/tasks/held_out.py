@@ -8,7 +8,8 @@ HELD_OUT_SEED = 2**32
 """Above every seed that a training run can have, so that none meets these draws.
 
 Not a stream of its own: NumPy reads a seed as words of 32 bits, and this one is the stream of `SeedSequence([0, 1])`,
-which the pools of test wings draw from as well. Those are other draws of other tasks, held out too: nothing leaks.
+from which the test wings of pool 0 and the draws that HoverAdapt's references are tested on come as well. Those are
+held out, too, and nothing is learned from them: nothing leaks.
 """
 
 
