@@ -46,7 +46,7 @@ class Flights:
 
 
 @record
-class Comparison:
+class FrontComparison:
     """A policy beside a front at equal rms height.
 
     Attributes:
@@ -109,7 +109,7 @@ def fly(
     return Flights(power_excess=power / beats, square_height=square / beats, beats=beats, lost=lost, returns=returns)
 
 
-def compare_with_front(flights: Flights, front: Sequence[Flights], *, seed: int = 0) -> Comparison:
+def compare_with_front(flights: Flights, front: Sequence[Flights], *, seed: int = 0) -> FrontComparison:
     """The policy's power against the front's at equal rms height, linear in the logarithm of height between points.
 
     Args:
@@ -140,7 +140,7 @@ def compare_with_front(flights: Flights, front: Sequence[Flights], *, seed: int 
     difference = power[:, 0] - there
     tail = 50 * (1 - CONFIDENCE)
     low, high = np.percentile(difference[1:], [tail, 100 - tail])
-    return Comparison(
+    return FrontComparison(
         rms_height=float(np.exp(level[0, 0])),
         power_excess=float(power[0, 0]),
         front_power_excess=float(there[0]),
@@ -156,8 +156,3 @@ def _undominated(level: np.ndarray, power: np.ndarray) -> np.ndarray:
     order = np.argsort(level)
     least = np.minimum.accumulate(np.concatenate([[np.inf], power[order][:-1]]))
     return order[power[order] < least]
-
-
-def interval_of_mean(values: np.ndarray) -> float:
-    """Half-width of the 95 % interval of a mean, normal approximation."""
-    return float(1.96 * np.std(values, ddof=1) / np.sqrt(len(values))) if len(values) > 1 else float("inf")

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.heave_flights import EPISODES, Flights, fly, interval_of_mean
+from agents.heave_flights import EPISODES, Flights, fly
+from agents.intervals import mean_with_interval
 from agents.lqg_controller import Lqg, lqg, proportional_derivative
 from agents.run_folder import open_run_folder, write_atomically
 from flapenv.aero.checks import record, require_count
@@ -121,13 +122,19 @@ def front_rows(front: Front) -> list[tuple[str, ...]]:
                     name,
                     f"{ratio:.3g}",
                     f"{one.rms_height:.4f}",
-                    f"{100 * one.mean_power_excess:.3f} ± {100 * interval_of_mean(one.power_excess):.3f}",
-                    f"{100 * np.mean(more):.3f} ± {100 * interval_of_mean(more):.3f}",
-                    f"{np.mean(one.returns):.3f} ± {interval_of_mean(one.returns):.3f}",
+                    _told(100 * one.power_excess),
+                    _told(100 * more),
+                    _told(one.returns),
                     f"{int(np.sum(one.lost))}",
                 )
             )
     return rows
+
+
+def _told(values: np.ndarray) -> str:
+    """A mean and its interval."""
+    mean, interval = mean_with_interval(values)
+    return f"{mean:.3f} ± {interval:.3f}"
 
 
 def draw_front(front: Front) -> "Figure":
@@ -153,7 +160,7 @@ def draw_front_on(axes: "Axes", front: Front) -> None:
         axes.errorbar(
             [one.rms_height for one in flights],
             [100 * (base.mean_power_excess + float(np.mean(values))) for values in more],
-            yerr=[100 * interval_of_mean(values) for values in more],
+            yerr=[100 * mean_with_interval(values)[1] for values in more],
             fmt=mark,
             color=colour,
             ms=4,

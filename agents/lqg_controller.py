@@ -7,6 +7,7 @@ pitch phase, where lift has no slope, so that to first order they cannot push bo
 there costs power that φmax would not.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -114,6 +115,27 @@ class Lqg:
         actions = np.tile(made.beat.hover, (len(seen), 1))
         actions[:, made.axis] = base + given
         return actions
+
+
+class OneEach:
+    """Controllers side by side, each of the next rows of a batch; `start` before each episode."""
+
+    def __init__(self, controllers: Sequence[Lqg], rows: int) -> None:
+        """Take the controllers and how many rows each has."""
+        self._controllers, self._rows = controllers, rows
+
+    def start(self) -> None:
+        """Forget the last episode."""
+        for one in self._controllers:
+            one.start()
+
+    def __call__(self, observations: np.ndarray) -> np.ndarray:
+        """Actions of all rows."""
+        starts = range(0, len(observations), self._rows)
+        parts = [
+            one(observations[start : start + self._rows]) for one, start in zip(self._controllers, starts, strict=True)
+        ]
+        return np.concatenate(parts)
 
 
 def lqg(insect: Insect | str, ratio: float, gusts: GustModel | None = None) -> Lqg:

@@ -44,7 +44,10 @@ with open(out.parent / "diary", "a") as diary:
 
 
 def hover_preset(**settings: Any) -> Preset:
-    return Preset(task="hover", settings=PPOSettings(**{"wingbeats": 20, "learning_rate": 0.1, **settings}))
+    return Preset(
+        task="hover",
+        settings=PPOSettings(**{"wingbeats": 20, "rows": 2, "minibatch": 2, "learning_rate": 0.1, **settings}),
+    )
 
 
 def faked(**what: str) -> Callable[[Run, Path], Sequence[str]]:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from agents.intervals import mean_with_interval
 from agents.predictor import Predictor
 from agents.tasks.described import described
-from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree, mean_with_interval
+from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
 from flapenv.adapt.tuning import NAMES
 from flapenv.aero.checks import record

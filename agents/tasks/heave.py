@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.heave_flights import EPISODES, Flights, Policy, compare_with_front, fly
+from agents.intervals import mean_with_interval
 from agents.lqg import RATIOS
-from agents.lqg_controller import Lqg, lqg
+from agents.lqg_controller import OneEach, lqg
 from agents.predictor import Predictor
 from agents.tasks.described import described
-from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree, mean_with_interval
+from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs.heave import HeaveVectorEnv
@@ -28,27 +29,6 @@ GLANCES = 8
 """Episodes of every insect at a glance."""
 GLANCED_RATIO = 0.2
 """Weight of the input of the LQG that a glance compares with: about that of the greatest return for the eight."""
-
-
-class OneEach:
-    """Controllers side by side, each of the next rows of a batch; `start` before each episode."""
-
-    def __init__(self, controllers: Sequence[Lqg], rows: int) -> None:
-        """Take the controllers and how many rows each has."""
-        self._controllers, self._rows = controllers, rows
-
-    def start(self) -> None:
-        """Forget the last episode."""
-        for one in self._controllers:
-            one.start()
-
-    def __call__(self, observations: np.ndarray) -> np.ndarray:
-        """Actions of all rows."""
-        starts = range(0, len(observations), self._rows)
-        parts = [
-            one(observations[start : start + self._rows]) for one, start in zip(self._controllers, starts, strict=True)
-        ]
-        return np.concatenate(parts)
 
 
 @record

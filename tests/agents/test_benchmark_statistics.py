@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.stats
 
 from agents.benchmark_data import (
     CURVE_POINTS,
@@ -40,6 +41,17 @@ def test_the_interval_holds_the_interquartile_mean_and_needs_two_runs(rng: np.ra
 def test_the_interval_covers_the_truth_nearly_as_often_as_it_says(rng: np.random.Generator) -> None:
     found = [interval(rng.normal(size=40)) for _ in range(20)]
     assert sum(one is not None and one[0] <= 0 <= one[1] for one in found) >= 17
+
+
+def test_the_interval_of_many_runs_is_1_96_standard_errors_either_side() -> None:
+    """Of n normal numbers the interquartile mean scatters by 1.0932/sqrt(n).
+
+    Source: Huber & Ronchetti (2009), Robust Statistics, section 3.3: the variance of a trimmed mean, here of a quarter.
+    """
+    quantiles = scipy.stats.norm.ppf((np.arange(100) + 0.5) / 100)
+    low, high = interval(quantiles) or (0.0, 0.0)
+    assert high - low == pytest.approx(2 * 1.96 * 1.0932 / 10, rel=0.03)
+    assert low + high == pytest.approx(0, abs=0.02)
 
 
 def test_a_profile_rises_from_none_to_all(rng: np.random.Generator) -> None:

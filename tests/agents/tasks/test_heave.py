@@ -10,9 +10,9 @@ import pytest
 from agents import lqg as front_module
 from agents.heave_flights import fly
 from agents.lqg import fly_every
-from agents.lqg_controller import Lqg, lqg
+from agents.lqg_controller import Lqg, OneEach, lqg
 from agents.tasks import heave, heave_picture
-from agents.tasks.heave import HeaveTask, OneEach
+from agents.tasks.heave import HeaveTask
 from agents.tasks.held_out import HELD_OUT_SEED
 
 EPISODES = 32

@@ -58,6 +58,17 @@ def test_the_test_wings_are_not_those_that_are_trained_on() -> None:
     assert np.array_equal(task.vector_env(4).flyers.r1_hat, train.wing.r1_hat)
 
 
+@pytest.mark.filterwarnings("ignore:.*outside the range of the lifting-line:UserWarning")
+def test_another_pool_of_wings_is_what_is_trained_on_where_another_is_asked_for() -> None:
+    pools = [
+        choose_pool(HoverProblem(), size=64, seed=seed, split="train", leave_out=None).wing.r1_hat for seed in (0, 3)
+    ]
+    trained = RandomWingsTask(pool_size=64, pool_seed=3).vector_env(4).flyers
+    assert np.array_equal(trained.r1_hat, pools[1])
+    assert not np.array_equal(trained.r1_hat, pools[0])
+    assert np.array_equal(RandomWingsTask(pool_seed=3).pool("train", 64).env.flyers.r1_hat, pools[1])
+
+
 def test_a_species_that_is_left_out_is_what_is_judged_and_its_like_is_not_trained_on() -> None:
     task = RandomWingsTask(pool_size=2048, leave_out="honeybee")
     flyers, wing = task.vector_env(4).flyers, task.leave_out.wing
