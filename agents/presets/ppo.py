@@ -52,12 +52,12 @@ class PPOSettings:
 
     algorithm: ClassVar[str] = "PPO"
 
-    wingbeats: int = 2_500_000
+    wingbeats: int = 3_500_000
     rows: int = 2_048
     steps: int = 1
     minibatch: int = 512
     epochs: int = 8
-    learning_rate: float = 3e-3
+    learning_rate: float = 5e-3
     learning_rate_ratio: float = 0.005
     learning_rate_power: float = 1.0
     clip_range: float = 0.2
@@ -156,6 +156,7 @@ PRESETS = {
             rows=256,
             minibatch=64,
             epochs=10,
+            learning_rate=3e-3,
             learning_rate_ratio=0.05,
             noise_floor=-2.0,
             last_noise_floor=-6.0,
@@ -166,6 +167,7 @@ PRESETS = {
         task="random-wings",
         settings=PPOSettings(
             wingbeats=3_000_000,
+            learning_rate=3e-3,
             layers=3,
             activation="silu",
             learning_rate_ratio=0.005,
