@@ -29,6 +29,7 @@ def parser() -> argparse.ArgumentParser:
             "  python train.py evaluate random-wings heave         others\n"
             "  python train.py evaluate runs/hover-ppo-seed0 --insects hawkmoth\n"
             "  python train.py evaluate hover --robustness         2 % actuator noise, and other coefficient models\n"
+            "  python train.py evaluate random-wings --costs       what a new wing costs\n"
             "  python train.py evaluate hover --problem profile-drag --out judged"
         ),
     )
@@ -38,6 +39,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--list", action="store_true", help="list the shipped policies and end")
     made.add_argument("--insects", nargs="+", metavar="NAME", help="other insects than those of the training")
     made.add_argument("--problem", metavar="NAME", help="another problem with the same observations and actions")
+    made.add_argument("--pool-seed", type=int, metavar="N", help="random wings: another pool of test wings")
     made.add_argument(
         "--noise",
         type=float,
@@ -108,7 +110,7 @@ def evaluated(policy: str, options: argparse.Namespace, kept: Path | None) -> st
     from agents.run_folder import RESULT_PICTURE, RESULTS, versions, write_json
 
     actor, card = load_policy(policy)
-    task = _task(card.task, {"insects": options.insects, "problem": options.problem})
+    task = _task(card.task, {"insects": options.insects, "problem": options.problem, "pool_seed": options.pool_seed})
     if card.environment != task.environment:
         raise ValueError(f"the card of {policy} says {card.environment}, its task flies {task.environment}")
     card.require_fit(task.vector_env(1))
