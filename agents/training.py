@@ -171,7 +171,7 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
         interrupted=interrupted,
     )
     save_results(config, result, model)
-    draw_pictures(task, result, flown(model))
+    draw_pictures(f"{config.name}, seed {config.seed}", task, result, flown(model))
     return result
 
 
@@ -225,9 +225,9 @@ def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgo
     )
 
 
-def draw_pictures(task: Task, result: TrainingResult, policy: Predictor) -> None:
-    """Add the learning curve and the task's picture to the run's folder."""
-    draw_learning_curve(result.out, task.distance, result.out.name).savefig(result.out / CURVE_PICTURE)
+def draw_pictures(title: str, task: Task, result: TrainingResult, policy: Predictor) -> None:
+    """Add the learning curve, under a title, and the task's picture to the run's folder."""
+    draw_learning_curve(result.out, task.distance, title).savefig(result.out / CURVE_PICTURE)
     task.draw(policy).savefig(result.out / RESULT_PICTURE)
 
 
