@@ -6,8 +6,12 @@ from importlib import import_module
 
 from flapenv.aero.checks import allowed
 
-COMMANDS = ("benchmark", "compare", "evaluate")
-"""Each is NAME_command of agents.NAME_command; without one of them a policy is trained."""
+COMMANDS = {
+    "benchmark": "agents.benchmark.command",
+    "compare": "agents.competition.command",
+    "evaluate": "agents.evaluate_command",
+}
+"""Where each command NAME is, as NAME_command; without one of them a policy is trained."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -22,7 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_: print(f"train.py: {message}", file=sys.stderr)
-            command = getattr(import_module(f"agents.{name}_command"), f"{name}_command")
+            command = getattr(import_module(COMMANDS.get(name, "agents.train_command")), f"{name}_command")
             return int(command(rest))
     except ImportError as missing:
         print(f"train.py: {missing}; install the learners: pip install -e '.[train]'", file=sys.stderr)

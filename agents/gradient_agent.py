@@ -14,7 +14,7 @@ from stable_baselines3.common.policies import ActorCriticPolicy, BasePolicy
 from stable_baselines3.common.type_aliases import MaybeCallback, Schedule
 from stable_baselines3.common.vec_env import VecEnv
 
-from agents.budget import GRADIENT_COST
+from agents.competition.budget import GRADIENT_COST
 from agents.policy import HoverPolicy
 
 

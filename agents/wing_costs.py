@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from agents.budget import Budget
-from agents.competition_table import median_to_solve
-from agents.competitors import load_libraries, run
+from agents.competition.budget import Budget
+from agents.competition.competitors import load_libraries, run
+from agents.competition.table import median_to_solve
 from agents.predictor import Predictor, begin
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv

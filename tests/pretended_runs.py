@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from agents.benchmark import BenchmarkConfig
+from agents.benchmark.runner import BenchmarkConfig
+from agents.benchmark.training_run import Run
 from agents.presets import Preset
 from agents.presets.ppo import PPOSettings
-from agents.training_run import Run
 
 FAKE = """
 import json, os, pathlib, sys, time

@@ -10,8 +10,8 @@ from conftest import strokes
 from hypothesis import given
 from hypothesis import strategies as st
 
-from agents.budget import Budget
-from agents.competitors import COMPETITORS, run
+from agents.competition.budget import Budget
+from agents.competition.competitors import COMPETITORS, run
 from flapenv import INSECTS, PROBLEMS, HoverProblem, Stroke, evaluate, load_insect, optimum
 from flapenv.case import hover_case, lift_constant
 from flapenv.optimum import lower_bound

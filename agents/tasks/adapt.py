@@ -8,6 +8,7 @@ import numpy as np
 
 from agents.intervals import mean_with_interval
 from agents.predictor import Predictor
+from agents.tasks.adapt_flights import Flown
 from agents.tasks.described import described
 from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
@@ -26,27 +27,6 @@ DRAWS, GLANCES = 1024, 64
 POLICY = "policy"
 RIVALS = ("lift_ladder", "felt_lift", "fixed_stroke")
 """References that a policy is compared with, from the best down; they know no more than it does."""
-
-
-@record
-class Flown:
-    """Episodes that a policy and the references flew on the same draws with the same noise.
-
-    Attributes:
-        rewards: of every beat, by "policy" and the references' names; shape (beats, rows) each; NaN where an insect has
-            no tuned references [-].
-        weight_support: true Λ of the policy's beats, shape (beats, rows) [-].
-        changed: whether the condition was no longer the first one, shape (beats, rows).
-    """
-
-    rewards: dict[str, np.ndarray]
-    weight_support: np.ndarray
-    changed: np.ndarray
-
-    @property
-    def returns(self) -> dict[str, np.ndarray]:
-        """Sums of the rewards, shape (rows,) each [-]."""
-        return {name: np.sum(rewards, axis=0) for name, rewards in self.rewards.items()}
 
 
 @record

@@ -10,7 +10,7 @@ from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from agents.tasks.adapt import Flown
+    from agents.tasks.adapt_flights import Flown
 
 STYLES = {
     "full_knowledge": (GREEN, "_"),

@@ -5,7 +5,7 @@ from dataclasses import asdict
 
 import pytest
 
-from agents.benchmark import BENCHMARKED
+from agents.benchmark.runner import BENCHMARKED
 from agents.presets import ALGORITHMS, DEFAULT_PRESET, PRESETS, PPOSettings, Preset, as_preset, setting_of
 from agents.tasks import TASKS
 

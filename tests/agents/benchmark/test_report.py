@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from agents.benchmark_command import benchmark_command
-from agents.benchmark_data import (
+from agents.benchmark.command import benchmark_command
+from agents.benchmark.data import (
     CURVE_POINTS,
     CURVES_TABLE,
     INSECTS_TABLE,
@@ -22,9 +22,9 @@ from agents.benchmark_data import (
     load,
     save,
 )
-from agents.benchmark_pictures import CURVES_PICTURE, FINAL_PICTURE, OTHERS_PICTURE, PROFILE_PICTURE, draw_final
-from agents.benchmark_report import PAGE, TABLE, percent, reached_rows, spent_rows, text_report
-from agents.machine import MACHINE, machine_text, note_machine, read_machines
+from agents.benchmark.machine import MACHINE, machine_text, note_machine, read_machines
+from agents.benchmark.pictures import CURVES_PICTURE, FINAL_PICTURE, OTHERS_PICTURE, PROFILE_PICTURE, draw_final
+from agents.benchmark.report import PAGE, TABLE, percent, reached_rows, spent_rows, text_report
 
 PRESETS = {"hover-ppo": 0.001, "hover-gradient": 1e-8, "random-wings-ppo": 0.002, "heave-ppo": -0.01}
 FULL_POINTS = 200

@@ -4,16 +4,17 @@ import argparse
 import sys
 from pathlib import Path
 
+from agents.one_line_parser import OneLineParser
+
 
 def parser() -> argparse.ArgumentParser:
     """The command line of `compare`."""
-    from agents.competitors import COMPETITORS
+    from agents.competition.competitors import COMPETITORS
     from flapenv import INSECTS, PROBLEMS
 
-    made = argparse.ArgumentParser(
+    made = OneLineParser(
         prog="train.py compare",
         description="Why not an optimiser? Let each search with the same budget of wingbeats on the same wings.",
-        formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog=(
             "examples:\n"
             "  python train.py compare                                  eight insects, five seeds, 10,000 wingbeats\n"
@@ -44,8 +45,9 @@ def parser() -> argparse.ArgumentParser:
 def compare_command(arguments: list[str]) -> int:
     """Run the competition; 0 on success, 2 for bad input, 130 after Ctrl-C."""
     options = parser().parse_args(arguments)
-    from agents.competition import CompetitionConfig, compete, prepare, save
-    from agents.competition_table import competition_table, wing_table
+    from agents.competition.compete import CompetitionConfig, compete, prepare
+    from agents.competition.keep import save
+    from agents.competition.table import competition_table, wing_table
     from agents.run_folder import open_run_folder
 
     try:

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from agents.benchmark_data import THRESHOLDS, BenchmarkData, CurvePoint, RunRow
-from agents.benchmark_statistics import CONFIDENCE, first_below, interquartile_mean, interval, median_of_reached
-from agents.machine import machine_text, read_machines
+from agents.benchmark.data import THRESHOLDS, BenchmarkData, CurvePoint, RunRow
+from agents.benchmark.machine import machine_text, read_machines
+from agents.benchmark.statistics import CONFIDENCE, first_below, interquartile_mean, interval, median_of_reached
 from agents.run_folder import write_atomically
 from flapenv.tables import text_table
 
@@ -106,7 +106,7 @@ def write_report(data: BenchmarkData, folder: Path) -> str:
     Returns:
         The tables as text.
     """
-    from agents.benchmark_pictures import draw_all
+    from agents.benchmark.pictures import draw_all
 
     machine = machine_text(read_machines(folder))
     text = text_report(data, machine)

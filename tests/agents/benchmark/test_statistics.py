@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from agents.benchmark_data import (
+from agents.benchmark.data import (
     CURVE_POINTS,
     THRESHOLDS,
     CurvePoint,
     thinned,
 )
-from agents.benchmark_statistics import (
+from agents.benchmark.statistics import (
     first_below,
     interquartile_mean,
     interval,

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import train as command
-from agents.budget import Trace
-from agents.competition import CompetitionConfig, CompetitionResult, PolicyScore, compete, prepare, save
-from agents.competition_table import break_even, checkpoints, competition_table, median_to_solve, quartiles, wing_table
+from agents.competition.budget import Trace
+from agents.competition.compete import CompetitionConfig, CompetitionResult, PolicyScore, compete, prepare
+from agents.competition.keep import save
+from agents.competition.table import break_even, checkpoints, competition_table, median_to_solve, quartiles, wing_table
 from agents.presets import PPOSettings, Preset
 from agents.training import TrainingConfig, train
 
@@ -128,7 +129,7 @@ def test_a_taken_folder_is_refused_before_anything_is_searched(
 def test_ctrl_c_keeps_the_searches_that_have_ended(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import agents.competition as competition
+    import agents.competition.compete as competition
 
     original, calls = competition.run, []
 
@@ -138,7 +139,7 @@ def test_ctrl_c_keeps_the_searches_that_have_ended(
             raise KeyboardInterrupt
         return original(*arguments)
 
-    monkeypatch.setattr("agents.competition.run", stop_at_third)
+    monkeypatch.setattr("agents.competition.compete.run", stop_at_third)
     arguments = ["compare", "--quiet", "--insects", "hawkmoth", "--seeds", "2", "--wingbeats", "100"]
     assert command.main([*arguments, "--out", str(tmp_path / "kept")]) == 130
     kept = json.loads((tmp_path / "kept" / "results.json").read_text(encoding="utf-8"))

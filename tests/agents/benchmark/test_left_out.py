@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from agents import left_out, training_run
+from agents.benchmark import left_out, training_run
+from agents.benchmark.training_run import Run
 from agents.presets import PRESETS
 from agents.training import LAST_SEED
-from agents.training_run import Run
 
 STAND_IN = """
 import json, pathlib, sys

@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.benchmark_data import BenchmarkData, CurvePoint
-from agents.benchmark_statistics import interquartile_mean, interval, last_known, profile
-from agents.competition_picture import COLOURS, DASHES
+from agents.benchmark.data import BenchmarkData, CurvePoint
+from agents.benchmark.statistics import interquartile_mean, interval, last_known, profile
+from agents.competition.picture import COLOURS, DASHES
 from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
 
 if TYPE_CHECKING:

@@ -10,11 +10,11 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from agents.folder_lock import locked
-from agents.machine import note_machine
+from agents.benchmark.folder_lock import locked
+from agents.benchmark.machine import note_machine
+from agents.benchmark.subprocesses import ERRORS, Command, run_all
+from agents.benchmark.training_run import COMMAND, Run, clear, cut_short, is_there, run_command
 from agents.run_folder import RESULTS, write_json
-from agents.subprocesses import ERRORS, Command, run_all
-from agents.training_run import COMMAND, Run, clear, cut_short, is_there, run_command
 from flapenv.aero.checks import record
 
 CommandOf = Callable[[Run, Path], Sequence[str]]

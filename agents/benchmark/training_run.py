@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 COMMAND = "command.json"
 """The command of a run, which marks its folder as made by `run_queue`: such a folder may be removed."""
-TRAIN = Path(__file__).parents[1] / "train.py"
+TRAIN = Path(__file__).parents[2] / "train.py"
 
 
 def registered() -> "Mapping[str, Preset]":

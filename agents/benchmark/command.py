@@ -5,24 +5,24 @@ import os
 import sys
 from pathlib import Path
 
-from agents.benchmark import BENCHMARKED, ROOT, BenchmarkConfig, finished_runs, run_benchmark
-from agents.benchmark_data import collect, load, save
-from agents.benchmark_report import text_report, write_report
-from agents.machine import machine_text, read_machines, write_machines
-from agents.run_queue import CommandOf, Outcome
-from agents.training_run import run_command
+from agents.benchmark.data import collect, load, save
+from agents.benchmark.machine import machine_text, read_machines, write_machines
+from agents.benchmark.report import text_report, write_report
+from agents.benchmark.run_queue import CommandOf, Outcome
+from agents.benchmark.runner import BENCHMARKED, ROOT, BenchmarkConfig, finished_runs, run_benchmark
+from agents.benchmark.training_run import run_command
+from agents.one_line_parser import OneLineParser
 
 
 def benchmark_parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(
+    made = OneLineParser(
         prog="train.py benchmark",
         description=(
             "How near do the learners come, how surely, how fast? Trains every preset with several seeds, each run in\n"
             "a process of its own on one thread, and writes tables and pictures.\n"
             "Ctrl-C or a crash loses only the runs under way: the same command goes on where it stopped."
         ),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog=(
             "examples:\n"
             "  python train.py benchmark                        everything: one to two hours on two cores\n"

@@ -4,9 +4,9 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from agents.benchmark.run_queue import CommandOf, Outcome, train_all
+from agents.benchmark.training_run import Run, is_there, registered, run_command
 from agents.run_folder import RUNS
-from agents.run_queue import CommandOf, Outcome, train_all
-from agents.training_run import Run, is_there, registered, run_command
 from flapenv.aero.checks import record, require_count, require_name
 
 BENCHMARKED = (

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.competition import CompetitionResult
-from agents.competition_table import quartiles
+from agents.competition.compete import CompetitionResult
+from agents.competition.table import quartiles
 from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib
 
 if TYPE_CHECKING:

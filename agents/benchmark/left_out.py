@@ -1,14 +1,15 @@
-"""Each species left out in turn: `python -m agents.left_out` trains without its like and judges the policy on it."""
+"""Each species left out in turn: `python -m agents.benchmark.left_out` trains without its like and judges it."""
 
 import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from agents.benchmark.run_queue import CommandOf, train_all
+from agents.benchmark.training_run import Run, registered, run_command
+from agents.one_line_parser import OneLineParser
 from agents.read_json import read_object
 from agents.run_folder import RESULTS, RUNS, write_atomically
-from agents.run_queue import CommandOf, train_all
-from agents.training_run import Run, registered, run_command
 from flapenv.aero.checks import require_count, require_name
 from flapenv.insects import INSECTS
 from flapenv.tables import text_table
@@ -68,7 +69,7 @@ def left_out_table(root: Path, names: Sequence[str]) -> str:
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    made = argparse.ArgumentParser(prog="python -m agents.left_out", description=__doc__)
+    made = OneLineParser(prog="python -m agents.benchmark.left_out", description=__doc__)
     made.add_argument("--insects", nargs="+", default=list(INSECTS), metavar="NAME", help="default: all eight")
     made.add_argument("--preset", default=PRESET, metavar="NAME", help=f"of random wings (default {PRESET})")
     made.add_argument("--seed", type=int, default=0, metavar="N", help="of every run (default 0)")

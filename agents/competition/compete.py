@@ -14,11 +14,10 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from agents.budget import Budget, Trace
 from agents.comparison import Comparison
-from agents.competitors import COMPETITORS, load_libraries, run
+from agents.competition.budget import Budget, Trace
+from agents.competition.competitors import COMPETITORS, load_libraries, run
 from agents.policy_file import load_policy
-from agents.run_folder import RESULTS, versions, write_json
 from flapenv.aero.checks import record, require_count, require_name
 from flapenv.envs import HoverVectorEnv
 from flapenv.insects import INSECTS, Insect, as_insect, pick
@@ -214,37 +213,3 @@ def _policy_score(folder: Path, insects: tuple[Insect, ...], problem: HoverProbl
     told = card.result.get("seconds")
     seconds = float(told) if isinstance(told, int | float) and math.isfinite(told) else None
     return PolicyScore(name=folder.resolve().name, wingbeats=card.wingbeats, seconds=seconds, gaps=gaps)
-
-
-def save(result: CompetitionResult, folder: Path) -> None:
-    """Keep traces, table and picture.
-
-    Args:
-        result: what came out.
-        folder: there already, of `open_run_folder`.
-    """
-    from agents.competition_picture import draw_competition
-    from agents.competition_table import competition_table, wing_table
-
-    config = result.config
-    write_json(
-        folder / RESULTS,
-        {
-            "problem": config.problem.to_dict(),
-            "insects": [insect.name for insect in result.insects],
-            "left_out": list(result.left_out),
-            "wingbeats": config.wingbeats,
-            "seeds": config.seeds,
-            "traces": {name: [vars(trace) for trace in traces] for name, traces in result.traces.items()},
-            "policies": [{**vars(policy), "gaps": _plain(policy.gaps)} for policy in result.policies],
-            "interrupted": result.interrupted,
-            "versions": versions(),
-        },
-    )
-    (folder / "table.txt").write_text(f"{competition_table(result)}\n\n{wing_table(result)}\n", encoding="utf-8")
-    draw_competition(result).savefig(folder / "competition.png")
-
-
-def _plain(gaps: np.ndarray) -> list[float | None]:
-    """Gaps as JSON keeps them: None for those that are no finite number."""
-    return [gap if math.isfinite(gap) else None for gap in gaps.tolist()]

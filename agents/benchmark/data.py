@@ -9,7 +9,7 @@ from typing import Any, TypeVar, get_type_hints
 
 import numpy as np
 
-from agents.benchmark_statistics import first_below
+from agents.benchmark.statistics import first_below
 from agents.read_json import read_object
 from agents.run_folder import CURVE, RESULTS, write_atomically
 from flapenv.aero.checks import record, require_scalar

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from agents.benchmark_data import load
-from agents.benchmark_report import PAGE, markdown_report
-from agents.machine import machine_text, read_machines
+from agents.benchmark.data import load
+from agents.benchmark.machine import machine_text, read_machines
+from agents.benchmark.report import PAGE, markdown_report
 from agents.policy_file import load_policy, shipped_policies
 
-FOLDER = Path(__file__).parents[2] / "docs" / "benchmark"
+FOLDER = Path(__file__).parents[3] / "docs" / "benchmark"
 
 
 def test_the_page_is_what_the_kept_numbers_make() -> None:

@@ -9,11 +9,11 @@ import pytest
 from pretended_runs import change, config, diary, faked, hover_preset
 
 import agents.presets
-from agents.benchmark import finished_runs, run_benchmark
-from agents.benchmark_command import benchmark_command
+from agents.benchmark.command import benchmark_command
+from agents.benchmark.runner import finished_runs, run_benchmark
+from agents.benchmark.training_run import Run
 from agents.presets import Preset
 from agents.run_folder import RESULTS
-from agents.training_run import Run
 
 
 @pytest.fixture(autouse=True)

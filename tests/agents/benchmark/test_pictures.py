@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from agents.benchmark_data import BenchmarkData, CurvePoint, InsectRow, RunRow
-from agents.benchmark_pictures import draw_curves, draw_final, draw_others, draw_profile
-from agents.benchmark_statistics import interquartile_mean, last_known
+from agents.benchmark.data import BenchmarkData, CurvePoint, InsectRow, RunRow
+from agents.benchmark.pictures import draw_curves, draw_final, draw_others, draw_profile
+from agents.benchmark.statistics import interquartile_mean, last_known
 from flapenv.drawing import BLUE, ORANGE
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from agents.budget import Trace
-from agents.competition import CompetitionConfig, CompetitionResult, PolicyScore
+from agents.competition.budget import Trace
+from agents.competition.compete import CompetitionConfig, CompetitionResult, PolicyScore
 from flapenv.tables import text_table
 
 CHECKPOINTS = (10, 100, 1_000, 10_000, 100_000, 1_000_000)

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from agents.budget import Budget, BudgetSpentError
+from agents.competition.budget import Budget, BudgetSpentError
 
 Competitor = Callable[[Budget, np.random.Generator], None]
 RANDOM_BATCH = 64

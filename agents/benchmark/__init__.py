@@ -1,0 +1,1 @@
+"""The benchmark of the learners: runs in processes of their own, kept numbers, tables and pictures."""

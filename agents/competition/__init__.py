@@ -1,0 +1,1 @@
+"""Optimisers and policies on the same wings with equal budgets."""
