@@ -22,5 +22,5 @@ def test_a_shipped_policy_is_the_run_of_seed_0(name: str) -> None:
     _, card = load_policy(name)
     (run,) = (run for run in load(FOLDER).runs_of(card.preset) if run.seed == card.seed)
     assert card.seed == 0
-    assert run.mean == pytest.approx(card.result["mean"], rel=1e-6)
+    assert run.mean == pytest.approx(card.result["mean"], rel=1e-5)
     assert run.wingbeats == card.wingbeats
