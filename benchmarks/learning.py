@@ -13,9 +13,9 @@ from stable_baselines3.common.logger import Logger
 from agents.callbacks import Annealing
 from agents.presets import DEFAULT_PRESET, PRESETS, Preset
 from agents.training import make_model
+from benchmarks.speed import rate
 from flapenv.tables import text_table
 
-SECONDS, REPETITIONS = 2.0, 3
 SHARE = 0.1
 """Of the preset's budget that is learned through from its beginning to its end."""
 
@@ -46,19 +46,6 @@ class Stopwatch:
                     self.seconds[caller] = self.seconds.get(caller, 0.0) - took
 
         setattr(owner, method, timed)
-
-
-def rate(work: Callable[[], object], wingbeats: int) -> float:
-    """Wingbeats a second, the best of several repetitions."""
-    work()
-    best = 0.0
-    for _ in range(REPETITIONS):
-        calls, start = 0, time.perf_counter()
-        while (elapsed := time.perf_counter() - start) < SECONDS:
-            work()
-            calls += 1
-        best = max(best, calls * wingbeats / elapsed)
-    return best
 
 
 def learner(preset: Preset) -> PPO:

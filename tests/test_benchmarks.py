@@ -49,8 +49,8 @@ def test_the_profile_has_the_floor_and_the_parts_of_a_step(
 def test_learning_is_measured_from_the_environment_to_the_whole_learner(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(learning, "SECONDS", 1e-3)
-    monkeypatch.setattr(learning, "REPETITIONS", 1)
+    monkeypatch.setattr(speed, "SECONDS", 1e-3)
+    monkeypatch.setattr(speed, "REPETITIONS", 1)
     monkeypatch.setattr(learning, "SHARE", 0.002)
     learning.main()
     out = capsys.readouterr().out
