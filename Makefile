@@ -9,7 +9,7 @@ RLLIB := .venv-rllib
 ENV_ID ?= flapenv/Hover-v0
 ZOO_ALGO ?= ppo
 
-.PHONY: help train test test-fast test-floor lint format bench benchmark validate clients client-ppo client-zoo client-rllib clean
+.PHONY: help train test test-fast test-floor test-browser lint format bench benchmark validate clients client-ppo client-zoo client-rllib clean
 
 help:  ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -33,13 +33,18 @@ train: $(STAMP)  ## Train one policy for all eight insects and print the compari
 	OMP_NUM_THREADS=1 $(BIN)/python train.py $(ARGS)
 
 test: lint  ## Lint, type-check and run every test, the slow learning tests too
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest -m "not browser" $(ARGS)
 
 test-fast: $(STAMP)  ## The tests without those that train a policy
-	$(BIN)/python -m pytest -m "not slow" $(ARGS)
+	$(BIN)/python -m pytest -m "not slow and not browser" $(ARGS)
 
 test-floor: $(FLOOR)/.installed  ## The environments' tests with the oldest Gymnasium, NumPy and SciPy allowed
 	$(FLOOR)/bin/python -m pytest tests/envs $(ARGS)
+
+test-browser: $(STAMP)  ## Report and explorer in Chromium, which is installed where it is missing (Debian, as root)
+	@command -v chromium >/dev/null || command -v google-chrome >/dev/null || { apt-get update -q && apt-get install -y -q chromium; } \
+		|| { echo "make test-browser: no Chromium, and apt-get could not install it; mend: install the package chromium as root" >&2; exit 2; }
+	$(BIN)/python -m pytest -m browser $(ARGS)
 
 lint: $(STAMP)  ## ruff (lint and format) and mypy
 	$(BIN)/ruff check .
