@@ -122,7 +122,6 @@ def config() -> dict[str, Any]:
         "displaylogo": False,
         "displayModeBar": False,
         "modeBarButtonsToRemove": REMOVED_BUTTONS,
-        "showLink": False,
         "plotlyServerURL": "",
         "scrollZoom": False,
     }
