@@ -11,7 +11,7 @@ from flapenv.insects import INSECTS, Insect, load_insect
 AIR_VISCOSITY = 1.789e-5
 """μ of air at 15 °C [Pa s] (International Standard Atmosphere); it hardly changes with density."""
 SMALLEST_ANGLE, LARGEST_ANGLE = math.radians(25), math.radians(45)
-"""Angles of attack of insects' wings at mid-stroke, for which the model was made [rad] (Part II, section 3.3)."""
+"""Angles of attack of insects' wings at mid-stroke, where the model's accuracy is good [rad] (Part II, section 2.3.2)."""
 SLACK = 0.01
 """Of a range's larger end, by which a value must be outside before it is worth a word."""
 
@@ -65,7 +65,7 @@ def reynolds_number(insect: Insect, stroke: Stroke, *, air_density: float = 1.22
         stroke: one stroke, scalar fields.
         air_density: ρ [kg/m³].
 
-    Source: Ellington (1984); the definition that Sun & Du (2003) use.
+    Source: Sun & Du (2003), whose U = 2 Φ n r₂ is Ū with Φ = 2 φmax.
     """
     wing = insect.wing
     speed = stroke.mean_flap_speed * math.sqrt(wing.moment(2)) * wing.length
