@@ -7,11 +7,11 @@ import numpy as np
 
 from agents.comparison import Comparison, comparison_table, mean_gap, worst_gap
 from agents.predictor import Predictor
-from agents.tasks.described import described
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.insect_choice import listed_insects
+from flapenv.insects import described
 from flapenv.problem import as_problem
 
 if TYPE_CHECKING:
