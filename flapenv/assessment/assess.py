@@ -11,7 +11,7 @@ from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment.hovering import hovering
 from flapenv.assessment.rankings import Ranking, rankings
-from flapenv.assessment.validity import Quantity, outside_validated
+from flapenv.assessment.validity import Quantity, outside_box, outside_validated
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.model import HoverModel
 from flapenv.optimum import Optimum, optimum
@@ -43,6 +43,7 @@ class StrokeAssessment:
         uncertainty: of `specific_power`, relative [-]: |model_error|, or the root mean square of the eight insects'
             where there is no CFD.
         outside: what of stroke and wing the eight CFD cases do not cover.
+        beyond_box: what of the stroke lies beyond the problem's box, where the optimum was not sought.
         rankings: the stroke beside the insect's own under other models.
     """
 
@@ -59,6 +60,7 @@ class StrokeAssessment:
     model_error: float | None
     uncertainty: float
     outside: tuple[Quantity, ...]
+    beyond_box: tuple[Quantity, ...]
     rankings: tuple[Ranking, ...]
 
     @property
@@ -118,6 +120,7 @@ class StrokeAssessment:
             "saving_to_cfd_percent": _percent(self.saving_to_cfd),
             "saving_to_cfd_uncertainty_percent": _percent(self.saving_uncertainty),
             "outside_validated_range": list(self.flags),
+            "beyond_box": [quantity.text for quantity in self.beyond_box],
             "other_models": [ranking.to_dict() for ranking in self.rankings],
             "stroke": {name: float(getattr(self.stroke, name)) for name in STROKE_PARAMETERS},
         }
@@ -159,6 +162,7 @@ def assess(
         model_error=error,
         uncertainty=typical_error(model) if error is None else abs(error),
         outside=outside_validated(insect, stroke, air_density=model.air_density),
+        beyond_box=outside_box(insect, stroke, problem.box),
         rankings=rankings(insect, stroke, model),
     )
 
