@@ -39,7 +39,7 @@ def assessment_table(results: Sequence[StrokeAssessment], called: str = LEARNED)
     )
     lines += [
         "±: the model's own error against CFD at the insect's stroke (without CFD, the rms of the eight insects')",
-        "saved: of what the own stroke needs to carry the weight, by CFD and by this model",
+        "saved: of the own stroke's power by CFD and by this model, each beaten as fast as carries exactly the weight",
     ]
     lines += [ranking_sentence(results, called), outside_sentences(results)]
     return "\n".join(line for line in lines if line)
