@@ -1,7 +1,6 @@
 """`python train.py`: train one policy by a preset."""
 
 import argparse
-import json
 import shlex
 import sys
 from pathlib import Path
@@ -159,15 +158,9 @@ def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
         OSError: if the file cannot be read.
     """
     from agents.presets import as_preset
+    from flapenv.read_json import read_object
 
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except UnicodeDecodeError as mistake:
-        raise ValueError(f"--config {path} is not text: {mistake}") from None
-    except (ValueError, RecursionError) as mistake:
-        raise ValueError(f"--config {path} is not JSON that can be read: {mistake}") from None
-    if not isinstance(content, dict):
-        raise TypeError(f"--config {path} holds no object; allowed: a config.json as a run writes it")
+    content = read_object(path, called=f"--config {path}", mend="a config.json as a run writes it")
     for key in content:
         if key not in CONFIG_KEYS:
             raise TypeError(f"--config {path} has an unknown key {key!r}; {allowed(key, CONFIG_KEYS)}")
