@@ -26,7 +26,7 @@ def numbers(case: Case, stroke: Stroke) -> list[Any]:
         _tile("weight_support", "weight support Λ", f"{judged.weight_support:#.5g}", "", judged.weight_support),
         _tile("specific_power", "power P*", f"{judged.specific_power:#.5g}", "W/kg", judged.specific_power),
         _tile("gap", "gap to the optimum", _percent(judged.gap), "%", judged.gap),
-        _tile("saving", "saving against its own stroke", _percent(judged.saving), "%", judged.saving),
+        _tile("saving", "saving to own, both hovering", _percent(judged.saving), "%", judged.saving),
     ]
     exact = {
         "insect": case.insect.name,
@@ -58,7 +58,7 @@ def _percent(share: float | None) -> str:
 def note(case: Case) -> list[Any]:
     """What does not change with the stroke: the wing, its optimum, bound and CFD's value."""
     own, wing = case.own, case.insect.wing
-    lines = [f"AR {wing.aspect_ratio:.2f}, {case.insect.mass * 1e6:.4g} mg"]
+    lines = [f"{case.insect.name}: {case.insect.mass * 1e6:.4g} mg, AR {wing.aspect_ratio:.2f}"]
     if own.best.feasible:
         bound = f", proven bound {own.best.lower_bound:.4g} W/kg" if own.best.lower_bound is not None else ""
         lines.append(f"optimum of the box: {own.best.specific_power:.4g} W/kg{bound}")
@@ -78,9 +78,10 @@ def remarks(case: Case, stroke: Stroke) -> list[Any]:
     found.append(f"uncertainty of P*: ±{100 * judged.uncertainty:.0f} %, {_why(judged)}")
     if judged.weight_support < 1 - 1e-6:
         found.append(f"this stroke carries {100 * judged.weight_support:.2f} % of the weight: it does not hover")
-    if beyond := case.beyond(stroke):
-        found.append(f"outside of the problem's box: {', '.join(beyond)}; the optimum is the box's")
-    found += [f"outside of what CFD has checked: {text}" for text in judged.flags]
+    if judged.beyond_box:
+        found.append(f"outside of the problem's box: {'; '.join(one.text for one in judged.beyond_box)}")
+    if judged.flags:
+        found.append(f"outside of what CFD has checked: {'; '.join(judged.flags)}")
     others = rankings(case.insect, stroke, case.problem.model)
     if stroke != case.insect.stroke and others:
         against = [one.model for one in others if not one.survives]

@@ -111,8 +111,8 @@ def _stroke_callbacks(app: Dash, cases: Cases) -> None:
         inputs={"key": Input("case", "data"), "moved": [Input(name, "value") for name in names]},
     )
     def show_numbers(key: Any, moved: Any) -> Any:
-        if key is None:
-            return no_update
+        if key is None:  # the note says what is wrong
+            return None
         try:
             case = cases.known(key)
             return numbers(case, read_stroke(moved, case.insect))

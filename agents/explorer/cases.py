@@ -15,6 +15,8 @@ from flapenv.aero.checks import require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment, assess, outside_validated
+from flapenv.assessment.hovering import hovering
+from flapenv.assessment.validity import outside_box
 from flapenv.insects import INSECTS, Insect, load_insect
 from flapenv.performance import evaluate
 from flapenv.problem import PROBLEMS, HoverProblem
@@ -27,8 +29,6 @@ POLICY, WING_POLICY = "hover", "random-wings"
 """The shipped policies of the eight insects, and of any wing."""
 KEPT = 64
 """Cases that are kept; the one that was used longest ago goes first."""
-ROUNDING = 1e-6
-"""Relative; how far beyond a bound of the box a stroke may be and still count as inside."""
 
 
 class Case:
@@ -46,14 +46,17 @@ class Case:
 
     def judged(self, stroke: Stroke) -> StrokeAssessment:
         """A stroke judged as `assess` does it, without the other models; solves nothing."""
-        found = evaluate(self.insect, stroke, **vars(self.problem.model))
+        model = self.problem.model
+        found, carried = evaluate(self.insect, stroke, **vars(model)), hovering(self.insect, stroke, model)
         return dataclasses.replace(
             self.own,
             stroke=stroke,
             weight_support=found.weight_support,
             specific_power=found.specific_power,
             gap=self.own.best.gap(found.weight_support, found.specific_power),
-            outside=outside_validated(self.insect, stroke, air_density=self.problem.model.air_density),
+            hovering_power=carried.specific_power if carried else None,
+            outside=outside_validated(self.insect, stroke, air_density=model.air_density),
+            beyond_box=outside_box(self.insect, stroke, self.problem.box),
             rankings=(),
         )
 
@@ -67,16 +70,6 @@ class Case:
         actor, _ = load_policy(POLICY if self.insect.name in INSECTS else WING_POLICY)
         info = Comparison([self.insect], LEARNED_IN).beat(actor)
         return Stroke(**{name: float(info[f"stroke/{name}"][0]) for name in STROKE_PARAMETERS})
-
-    def beyond(self, stroke: Stroke) -> list[str]:
-        """Symbols of the parameters with which a stroke leaves the problem's box."""
-        outside = []
-        for name, parameter in STROKE_PARAMETERS.items():
-            low, high = self.problem.box.bounds(name, self.insect.reference)
-            slack = ROUNDING * max(abs(low), abs(high))
-            if not low - slack <= getattr(stroke, name) <= high + slack:
-                outside.append(parameter.symbol)
-        return outside
 
 
 class Cases:

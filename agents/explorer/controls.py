@@ -11,6 +11,10 @@ from flapenv.insects import Insect
 OWN_WING = "your own wing"
 """Entry of the list of insects under which one types one's own."""
 LONGEST_NAME = 60
+ROUNDING = 1e-9
+"""Relative, of a bound that went through degrees and back."""
+SHOWN_DECIMALS = 7
+"""Of a stroke that is loaded: more than one reads, fewer than make 90° look like 89.99999999999997°."""
 
 
 @record
@@ -42,8 +46,10 @@ class Control:
             TypeError: for anything but a number.
             ValueError: for NaN, inf or a number out of range.
         """
-        slack = 1e-9 * max(abs(self.low), abs(self.high))  # a bound that went through degrees and back
-        number = require_scalar(self.name, value, self.low - slack, self.high + slack, unit=self.unit)
+        if value is None:  # what a field sends that is empty, or beyond its own bounds
+            raise ValueError(f"{self.name} is missing; allowed: {self.low:g} to {self.high:g} {self.unit}".rstrip())
+        low, high = (end + side * ROUNDING * abs(end) for end, side in ((self.low, -1), (self.high, 1)))
+        number = require_scalar(self.name, value, low, high, unit=self.unit)
         return min(max(number, self.low), self.high)
 
 
@@ -115,7 +121,8 @@ def shown_stroke(stroke: Stroke, insect: Insect) -> list[float]:
         "pitch_phase": math.degrees(stroke.pitch_phase),
     }
     controls = stroke_controls(insect)
-    return [min(max(float(shown[control.name]), control.low), control.high) for control in controls]
+    near = {name: round(float(value), SHOWN_DECIMALS) for name, value in shown.items()}
+    return [min(max(near[control.name], control.low), control.high) for control in controls]
 
 
 def read_insect(name: object, own: object, insects: Mapping[str, Insect]) -> Insect:

@@ -21,6 +21,11 @@ BUTTONS = {"own": "its own stroke", "optimal": "the optimum", "learned": "the le
 PLACEHOLDER = "450px"
 """Height of a figure before it is there."""
 CONFIG: Any = config()  # Dash types every key of it
+HINTS = {
+    "own": "as it was measured; of a wing that you type, a plain one",
+    "optimal": "of the problem's box",
+    "learned": "by a shipped policy, which was trained for problem A",
+}
 FIGURES = {
     "beat": "The wing, beating",
     "forces": "Lift and power",
@@ -65,7 +70,9 @@ def _case(names: Sequence[str], shown: str) -> html.Div:
     return html.Div(
         [
             html.H2("Insect and problem"),
-            dcc.Dropdown(id="insect", options=[*names, OWN_WING], value=shown, clearable=False, searchable=False),
+            dcc.Dropdown(
+                id="insect", options=[*names, OWN_WING], value=shown, clearable=False, searchable=False, maxHeight=420
+            ),
             html.Div(own, id="own-wing", hidden=True),
             dcc.RadioItems(
                 id="problem", options=[{"value": n, "label": PROBLEM_LABELS[n]} for n in EXPLORED], value=EXPLORED[0]
@@ -80,7 +87,9 @@ def _stroke(first: Insect) -> html.Div:
     """Buttons that load a stroke, and the sliders."""
     shown = shown_stroke(first.stroke, first)
     rows = [_slider(control, value) for control, value in zip(stroke_controls(first), shown, strict=True)]
-    buttons = [html.Button(text, id=f"load-{label}", type="button") for label, text in BUTTONS.items()]
+    buttons = [
+        html.Button(text, id=f"load-{label}", type="button", title=HINTS[label]) for label, text in BUTTONS.items()
+    ]
     return html.Div(
         [
             html.H2("Stroke"),
@@ -132,7 +141,5 @@ def _with_unit(control: Control) -> str:
 
 def _figure(name: str) -> html.Div:
     """An empty figure with its caption."""
-    return html.Div(
-        [html.H2(FIGURES[name]), dcc.Graph(id=f"figure-{name}", config=CONFIG, style={"height": PLACEHOLDER}, className=f"graph {name}")],
-        className="figure",
-    )
+    graph = dcc.Graph(id=f"figure-{name}", config=CONFIG, style={"height": PLACEHOLDER})
+    return html.Div([html.H2(FIGURES[name]), graph], className="figure")
