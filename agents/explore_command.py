@@ -17,8 +17,6 @@ from flapenv.aero.checks import require_count, require_name
 if TYPE_CHECKING:
     from flask import Flask
 
-    from flapenv.insects import Insect
-
 DEFAULT_PORT, HIGHEST_PORT = 8050, 65535
 LOOPBACK = "127.0.0.1"
 """The only address that is listened on: nobody else's machine reaches it."""
@@ -38,7 +36,7 @@ def parser() -> OneLineParser:
             "examples:\n"
             "  python train.py explore                      the eight insects, or a wing that one types\n"
             "  python train.py explore --insect hawkmoth --port 9000\n"
-            "  python train.py explore --wing mywing.json   a wing of a file\n"
+            "  python train.py explore --wing docs/examples/robot.json    your own wing, within its limits\n"
         ),
     )
     made.add_argument(
@@ -110,11 +108,12 @@ def served(insect: str | None, wing: Path | None) -> "Flask":
         OSError: for a file that cannot be read.
     """
     from agents.explorer.app import make_app
+    from flapenv.files import read_wing
     from flapenv.insects import INSECTS
 
     if insect is not None:
         require_name("--insect", insect, INSECTS)
-    extra = None if wing is None else wing_of(wing)
+    extra = None if wing is None else read_wing(wing)
     server: Flask = make_app(extra, first=insect).server
     return server
 
@@ -128,15 +127,3 @@ def serve(server: "Flask", listening: socket.socket) -> None:
     _, port = listening.getsockname()
     with contextlib.suppress(KeyboardInterrupt):
         make_server(LOOPBACK, port, server, threaded=True, fd=listening.fileno()).serve_forever()
-
-
-def wing_of(path: Path) -> "Insect":
-    """The insect of a file.
-
-    Raises:
-        ValueError: for a file that does not hold a wing.
-        OSError: for a file that cannot be read.
-    """
-    from flapenv.files import read_wing
-
-    return read_wing(path).insect

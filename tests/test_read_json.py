@@ -49,7 +49,7 @@ def test_a_byte_order_mark_is_no_mistake(tmp_path: Path) -> None:
         (b'{"\\ud800": 1}', r"holds '\\ud800': surrogates not allowed"),
         (b"\xff\xfe{", "is not JSON: 'utf-8' codec"),
         (b'{"a": ' + b"[" * 100_000, "nested too deep"),
-        (b'{"a": ' + b"[" * DEEPEST + b"]" * DEEPEST + b"}", "nested too deep"),
+        (b'{"a": ' + b"[" * (DEEPEST + 1) + b"]" * (DEEPEST + 1) + b"}", "nested too deep"),
         (b'{"a": ' + b"9" * 5000 + b"}", "is not JSON that can be read"),
     ],
 )

@@ -14,9 +14,12 @@ from agents.plots.cycle import forces, terms, waveforms
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment, rankings
+from flapenv.files import NamedStroke, strokes_to_text
 
 YOURS = "yours"
 """Label of the stroke that the sliders say."""
+SAME_WEIGHT = 1e-3
+"""Weight supports that differ by less need no remark [-]."""
 
 
 def numbers(case: Case, stroke: Stroke) -> list[Any]:
@@ -26,7 +29,7 @@ def numbers(case: Case, stroke: Stroke) -> list[Any]:
         _tile("weight_support", "weight support Λ", f"{judged.weight_support:#.5g}", "", judged.weight_support),
         _tile("specific_power", "power P*", f"{judged.specific_power:#.5g}", "W/kg", judged.specific_power),
         _tile("gap", "gap to the optimum", _percent(judged.gap), "%", judged.gap),
-        _tile("saving", "saving to own, both hovering", _percent(judged.saving), "%", judged.saving),
+        _tile("saving", "saving against own stroke", _percent(judged.saving), "%", judged.saving),
     ]
     exact = {
         "insect": case.insect.name,
@@ -76,8 +79,10 @@ def remarks(case: Case, stroke: Stroke) -> list[Any]:
     """What one should know before one believes the numbers."""
     judged, found = case.judged(stroke), []
     found.append(f"uncertainty of P*: ±{100 * judged.uncertainty:.0f} %, {_why(judged)}")
-    if judged.weight_support < 1 - 1e-6:
+    if judged.weight_support < 1 - SAME_WEIGHT:
         found.append(f"this stroke carries {100 * judged.weight_support:.2f} % of the weight: it does not hover")
+    if abs(judged.weight_support - 1) > SAME_WEIGHT:
+        found.append("the saving compares both strokes at the frequency with which each carries the weight")
     if judged.beyond_box:
         found.append(f"outside of the problem's box: {'; '.join(one.text for one in judged.beyond_box)}")
     if judged.flags:
@@ -116,6 +121,11 @@ def figures(case: Case, stroke: Stroke, beside: str) -> list[go.Figure]:
         waveforms(insect, strokes, model),
         terms(insect, stroke, model),
     ]
+
+
+def file_text(case: Case, stroke: Stroke) -> str:
+    """The stroke and its insect as a file that `train.py evaluate` reads."""
+    return strokes_to_text([NamedStroke(stroke=stroke, insect=case.insect)])
 
 
 def file_name(case: Case) -> str:

@@ -7,25 +7,24 @@ import plotly.graph_objects as go
 from dash import ClientsideFunction, Dash, Input, Output, State, ctx, html, no_update
 from flask import Response
 
-from agents.explorer.answers import figures, file_name, note, numbers, remarks
+from agents.explorer.answers import figures, file_name, file_text, note, numbers, remarks
 from agents.explorer.cases import Cases
 from agents.explorer.controls import OWN_WING, WING_CONTROLS, read_stroke, shown_stroke, stroke_controls
-from agents.explorer.export import stroke_text
 from agents.explorer.guard import guard
 from agents.explorer.layout import BUTTONS, FIGURES, PAGE, page
 from agents.plots.beat import SCRIPT
 from flapenv.aero.checks import require_name
-from flapenv.insects import Insect
+from flapenv.files import WingFile
 
 MISTAKES = (ValueError, TypeError, ArithmeticError, OSError)
 """What is told on the page in one line."""
 
 
-def make_app(extra: Insect | None = None, *, first: str | None = None) -> Dash:
+def make_app(extra: WingFile | None = None, *, first: str | None = None) -> Dash:
     """The explorer, ready to be served.
 
     Args:
-        extra: an insect of one's own, listed and shown first.
+        extra: a wing of one's own with its limits, listed and shown first.
         first: name of the insect that is shown first otherwise.
 
     Raises:
@@ -157,7 +156,7 @@ def _stroke_callbacks(app: Dash, cases: Cases) -> None:
     def export(clicks: Any, key: Any, moved: Any) -> Any:
         try:
             case = cases.known(key)
-            text = stroke_text(case.insect, read_stroke(moved, case.insect))
+            text = file_text(case, read_stroke(moved, case.insect))
         except MISTAKES:  # the numbers say what is wrong
             return no_update
         return {"content": text, "filename": file_name(case), "type": "application/json"}

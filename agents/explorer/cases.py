@@ -17,6 +17,7 @@ from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment, assess, outside_validated
 from flapenv.assessment.hovering import hovering
 from flapenv.assessment.validity import outside_box
+from flapenv.files import WingFile
 from flapenv.insects import INSECTS, Insect, load_insect
 from flapenv.performance import evaluate
 from flapenv.problem import PROBLEMS, HoverProblem
@@ -75,20 +76,22 @@ class Case:
 class Cases:
     """The cases that the page asked for, by a key that only `solve` gives out."""
 
-    def __init__(self, extra: Insect | None = None) -> None:
+    def __init__(self, extra: WingFile | None = None) -> None:
         """Know the eight insects, and one more.
 
         Args:
-            extra: of a file, or None.
+            extra: of a file, whose limits narrow every problem's box.
 
         Raises:
             ValueError: for a name that is taken.
         """
         self.insects: Mapping[str, Insect] = {name: load_insect(name) for name in INSECTS}
+        self.extra = extra
         if extra is not None:
-            if extra.name in (*INSECTS, OWN_WING):
-                raise ValueError(f"name = {extra.name!r} is taken by one of the page's own; allowed: another name")
-            self.insects = {extra.name: extra, **self.insects}
+            name = extra.insect.name
+            if name in (*INSECTS, OWN_WING):
+                raise ValueError(f"name = {name!r} is taken by one of the page's own; allowed: another name")
+            self.insects = {name: extra.insect, **self.insects}
         self._solved: OrderedDict[str, Case] = OrderedDict()
         self._lock = threading.Lock()
 
@@ -107,6 +110,8 @@ class Cases:
         """
         insect = read_insect(name, own, self.insects)
         chosen = PROBLEMS[require_name("problem", problem, EXPLORED)]
+        if self.extra is not None and insect is self.extra.insect:
+            chosen = self.extra.problem(chosen)
         key = json.dumps([name, own if name == OWN_WING else None, chosen.name], ensure_ascii=True)
         with self._lock:
             case = self._solved.get(key)

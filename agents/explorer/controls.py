@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from flapenv.aero.checks import record, require_name, require_scalar
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
+from flapenv.files.plausible import CENTRES, require_plausible
 from flapenv.insects import Insect
 
 OWN_WING = "your own wing"
@@ -57,7 +58,15 @@ WING_CONTROLS: tuple[Control, ...] = (
     Control(name="mass", label="mass of the body", unit="mg", low=1e-3, high=1e6, step=0.001, start=100),
     Control(name="wing_length", label="wing length R", unit="mm", low=0.1, high=1000, step=0.01, start=13),
     Control(name="mean_chord", label="mean chord c̄", unit="mm", low=0.01, high=500, step=0.01, start=4),
-    Control(name="r1_hat", label="r̂₁, centre of area over R", unit="", low=0.3, high=0.7, step=0.001, start=0.49),
+    Control(
+        name="r1_hat",
+        label="r̂₁, centre of area over R",
+        unit="",
+        low=CENTRES[0],
+        high=CENTRES[1],
+        step=0.001,
+        start=0.49,
+    ),
     Control(
         name="reference_frequency", label="reference frequency", unit="Hz", low=0.1, high=5000, step=0.1, start=150
     ),
@@ -143,12 +152,14 @@ def read_insect(name: object, own: object, insects: Mapping[str, Insect]) -> Ins
         raise TypeError(f"wing is not a name and {len(WING_CONTROLS)} numbers")
     called, *values = own
     number = {control.name: control.checked(value) for control, value in zip(WING_CONTROLS, values, strict=True)}
-    return Insect(
+    insect = Insect(
         name=_read_name(called),
         mass=number["mass"] * 1e-6,
         wing=Wing(length=number["wing_length"] * 1e-3, mean_chord=number["mean_chord"] * 1e-3, r1_hat=number["r1_hat"]),
         stroke=Stroke(frequency=number["reference_frequency"], **REFERENCE_ANGLES),
     )
+    require_plausible(insect)
+    return insect
 
 
 def _read_name(name: object) -> str:
