@@ -96,11 +96,11 @@ class WingFile:
 
     def _common(self, field: str, own: str, bounds: tuple[float, float]) -> tuple[float, float]:
         """What the bounds of a problem, in its own terms, and the limits share."""
-        name, factor = field.removesuffix("_ratio"), 1.0
+        low, high = self.limits[field]
         if field != own:
-            reference = float(getattr(self.insect.reference, name))
-            factor = reference if own == name else 1 / reference
-        low, high = (limit * factor for limit in self.limits[field])
+            reference = float(getattr(self.insect.reference, field.removesuffix("_ratio")))
+            to_absolute = field.endswith("_ratio")  # divided, not multiplied by 1/reference: own over own is 1 exactly
+            low, high = (end * reference if to_absolute else end / reference for end in (low, high))
         common = max(low, bounds[0]), min(high, bounds[1])
         if common[0] > common[1]:
             raise ValueError(

@@ -107,6 +107,8 @@ def test_limits_replace_default_bounds_and_narrow_those_that_the_problem_sets() 
     box = wing_file(frequency=(10, 30), flap_shape=0.5).problem(fixed).box
     assert box.frequency_ratio == (1, 1)  # 26.3 Hz lies within
     assert box.flap_shape == (0.5, 0.5)
+    own = HAWKMOTH.stroke.frequency
+    assert wing_file(frequency=(own, own)).problem(fixed).box.frequency_ratio == (1, 1)
     drag = wing_file(pitch_amplitude=(math.radians(50), math.radians(88))).problem(PROBLEMS["profile-drag"])
     assert drag.box.pitch_amplitude == pytest.approx((math.radians(50), math.radians(85)))
     assert drag.model == PROBLEMS["profile-drag"].model
