@@ -23,7 +23,7 @@ from flapenv.files.envelope import (
 )
 from flapenv.files.plausible import FASTEST, require_plausible
 from flapenv.files.strokes import stroke_of
-from flapenv.insects import Insect
+from flapenv.insects import INSECTS, Insect, described
 from flapenv.problem import HoverProblem, StrokeBox
 from flapenv.read_json import read_object
 
@@ -59,6 +59,10 @@ class WingFile:
         if not isinstance(self.insect, Insect):
             raise TypeError(f"insect = {self.insect!r} is not allowed; allowed: an Insect")
         require_single(self.insect)
+        if self.insect.name in INSECTS and isinstance(described(self.insect), dict):
+            raise ValueError(
+                f"name = {self.insect.name!r} is that of an insect with other numbers; allowed: a name of one's own"
+            )
         require_plausible(self.insect)
         if not isinstance(self.limits, Mapping):
             raise TypeError(f"limits = {self.limits!r} are not allowed; allowed: an object of [lower, upper]")

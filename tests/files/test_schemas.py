@@ -147,8 +147,8 @@ WING = {
     "k_table": {"k_ind": 1.1, "k_tip": 1.1, "k_revolving": 1.2},
     "force_constants": {"lift_constant": 1.6, "zero_drag": 0.1, "normal_drag": 3.0},
 }
-BODY = {"mass", "length", "mean_chord", "r1_hat"}
-"""What a schema knows the ranges of, but not how they fit to each other."""
+BODY = {"name", "mass", "length", "mean_chord", "r1_hat"}
+"""What a schema knows one by one, but not how they fit to each other."""
 WING_PLACES = [
     *((key,) for key in (*WING, "published", "unknown") if key not in BODY),
     *(("units", name) for name in (*WING["units"], "unknown")),

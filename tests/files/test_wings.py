@@ -175,6 +175,7 @@ def with_stroke(**changes: Any) -> dict[str, Any]:
         ({key: one for key, one in valid().items() if key != "mass"}, "the file: mass not told"),
         (valid() | {"name": ""}, "name = '' is not allowed"),
         (valid() | {"name": "a\nb"}, r"name = 'a\\nb' is not allowed"),
+        (valid() | {"name": "hawkmoth"}, "name = 'hawkmoth' is that of an insect with other numbers"),
         (valid() | {"name": "a" * 101}, "allowed: 100 visible letters"),
         (valid() | {"mass": True}, "mass = True is not a real number"),
         (valid() | {"mass": 1648}, "mass = 1648 is not allowed; .*; 1648 looks like milligrams: 0.001648 kg"),
