@@ -99,6 +99,14 @@ def test_the_page_shows_the_first_insect_and_fits(opened: Page) -> None:
     assert min(heights) > 300
 
 
+def test_every_control_has_a_name_that_can_be_read_aloud(opened: Page) -> None:
+    for name in ("frequency f [Hz]", "amplitude φmax [°]", "angle of attack α_mid [°]", "phase δ, 90° symmetric [°]"):
+        expect(opened.get_by_role("slider", name=name)).to_have_count(1)
+        expect(opened.get_by_role("spinbutton", name=name)).to_have_count(1)
+    unnamed = opened.evaluate("[...document.querySelectorAll('button')].filter(b => !b.textContent && !b.ariaLabel)")
+    assert unnamed == []
+
+
 def test_a_key_on_a_slider_changes_the_numbers_at_once(opened: Page) -> None:
     opened.evaluate(WATCH)
     for name in ("frequency", "flap_amplitude", "alpha_mid"):
