@@ -4,11 +4,13 @@ import json
 import math
 import statistics
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
 
 import pytest
+from dash import Dash
 
 import flapenv
 from agents.explorer import cases
@@ -91,6 +93,27 @@ def test_numbers_are_answered_within_a_tenth_of_a_second(page: Any) -> None:
         times.append(time.perf_counter() - start)
     print(f"{1000 * statistics.median(times):.1f} ms (median), {1000 * max(times):.1f} ms (worst)")
     assert statistics.median(times) < 0.05  # the rest is the browser's
+
+
+def test_pages_that_are_drawn_at_once_do_not_disturb_each_other(page: Any, app: Dash) -> None:
+    page.choose(insect="fruitfly")  # beyond the range of some of the other models, whose warnings are silenced
+    calm = [page.values["case"], "own", *(250.0, 75.0, 0.1, 5.0, 40.0, 90.0)]
+    failed: list[BaseException] = []
+
+    def draw() -> None:
+        try:
+            other = type(page)(app)
+            assert other.ask("remarks.children", changed="calm.data", calm=calm)
+        except AssertionError as mistake:
+            failed.append(mistake)
+
+    for _ in range(3):
+        threads = [threading.Thread(target=draw) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert not failed
 
 
 def test_the_own_stroke_is_not_said_to_beat_itself(page: Any) -> None:
