@@ -164,7 +164,8 @@ def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
 
 def _keep(found: Any, kept: Path, command: str) -> None:
     """Write results.json and the picture."""
-    from agents.run_folder import RESULT_PICTURE, RESULTS, versions, write_json
+    from agents.run_folder import RESULT_PICTURE, RESULTS, versions
+    from flapenv.whole_file import write_json
 
     verdict = found.verdict
     scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": found.about["distance"]}

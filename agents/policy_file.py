@@ -12,9 +12,10 @@ from safetensors.numpy import save as tensors_as_bytes
 from agents.actor import Actor
 from agents.policy_card import PolicyCard
 from agents.recurrent_actor import AnyActor, RecurrentActor
-from agents.run_folder import POLICY_TENSORS, write_atomically, write_json
+from agents.run_folder import POLICY_TENSORS, write_atomically
 from flapenv.aero.checks import allowed
 from flapenv.read_json import read_object
+from flapenv.whole_file import write_json
 
 SHIPPED = Path(__file__).parent / "policies"
 """Where the repository's own policies lie."""

@@ -1,12 +1,10 @@
 """Where a run keeps what it learned: names of its files, written so that a crash leaves the old file or the new one."""
 
-import json
 import os
 import platform
 from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 
 from flapenv.whole_file import whole_file
 
@@ -49,12 +47,6 @@ def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` fill a file beside `path`, then put it in place in one step."""
     with whole_file(path) as beside:
         write(beside)
-
-
-def write_json(path: Path, content: dict[str, Any]) -> None:
-    """Write JSON that people can read; NaN and inf are refused."""
-    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-    write_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
 def versions() -> dict[str, str]:

@@ -29,11 +29,11 @@ from agents.run_folder import (
     TENSORBOARD,
     open_run_folder,
     versions,
-    write_json,
 )
 from agents.tasks import Predictor, Task, Verdict
 from agents.vec_env import GymnasiumVecEnv
 from flapenv.aero.checks import record, require_count
+from flapenv.whole_file import write_json
 
 LAST_SEED = 2**32 - 1
 """The largest seed that NumPy's and torch's global generators both take."""

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from agents.run_folder import versions, write_json
+from agents.run_folder import versions
 from flapenv.read_json import read_object
+from flapenv.whole_file import write_json
 
 MACHINE = "machine.json"
 CPU_TABLE = Path("/proc/cpuinfo")

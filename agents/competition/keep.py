@@ -8,7 +8,8 @@ import numpy as np
 from agents.competition.compete import CompetitionResult
 from agents.competition.picture import draw_competition
 from agents.competition.table import competition_table, wing_table
-from agents.run_folder import RESULTS, versions, write_json
+from agents.run_folder import RESULTS, versions
+from flapenv.whole_file import write_json
 
 
 def save(result: CompetitionResult, folder: Path) -> None:

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from flapenv.files.envelope import to_text, write_text
 from flapenv.files.schemas import stroke_schema, wing_schema
+from flapenv.whole_file import json_text, write_text
 
 SCHEMAS = {"stroke.schema.json": stroke_schema, "wing.schema.json": wing_schema}
 """Names of the files, and what makes them."""
@@ -20,7 +20,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, metavar="FOLDER", help="write them there instead")
     folder = parser.parse_args(arguments).out
     for name, schema in SCHEMAS.items():
-        text = to_text(schema())
+        text = json_text(schema())
         if folder is None:
             print(text, end="")
             continue

@@ -1,11 +1,10 @@
 """Run folders lose nothing."""
 
-import json
 from pathlib import Path
 
 import pytest
 
-from agents.run_folder import FILES, open_run_folder, versions, write_atomically, write_json
+from agents.run_folder import FILES, open_run_folder, versions, write_atomically
 
 
 def test_an_unnamed_run_gets_the_next_free_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -38,14 +37,6 @@ def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:
         write_atomically(path, fail)
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_json_is_readable_and_refuses_nan(tmp_path: Path) -> None:
-    write_json(tmp_path / "a.json", {"Λ": 1.0, "gap": None})
-    assert json.loads((tmp_path / "a.json").read_text(encoding="utf-8")) == {"Λ": 1.0, "gap": None}
-    with pytest.raises(ValueError, match="JSON"):
-        write_json(tmp_path / "a.json", {"gap": float("nan")})
-    assert json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["gap"] is None
 
 
 def test_versions_name_all_a_result_depends_on() -> None:
