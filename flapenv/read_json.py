@@ -3,8 +3,13 @@
 import json
 import math
 import os
+import stat
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
+
+from flapenv.aero.checks import LONGEST_SHOWN, one_line, shown
 
 LARGEST_FILE = 2**24
 """A larger file is not read [bytes]."""
@@ -26,9 +31,10 @@ def read_text(
 
     Raises:
         ValueError: for a file that is too large or no text.
-        OSError: if it cannot be read.
+        OSError: if it cannot be read, or is a folder, a pipe or a device, which might never end.
     """
-    called = os.fspath(path) if called is None else called
+    called = one_line(os.fspath(path) if called is None else called)
+    require_file(path, called)
     with Path(path).open("rb") as file:
         content = file.read(largest + 1)
     if len(content) > largest:
@@ -37,6 +43,30 @@ def read_text(
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as mistake:
         raise ValueError(f"{called} is not {kind}: {mistake}; allowed: text in UTF-8") from None
+
+
+def require_file(path: str | os.PathLike[str], called: str, mend: str = AS_WRITTEN) -> None:
+    """Refuse what is not there or is no file: a pipe without a writer would be waited for.
+
+    Args:
+        path: of the file.
+        called: how errors call it.
+        mend: what is allowed in its place, in words.
+
+    Raises:
+        OSError: for a folder, a pipe, a device, and a path that cannot be.
+    """
+    try:
+        mode = Path(path).stat().st_mode
+    except FileNotFoundError:
+        raise FileNotFoundError(f"{called} does not exist; allowed: {mend}") from None
+    except (OSError, ValueError) as mistake:  # too long, a loop, no permission, a zero byte
+        reason = getattr(mistake, "strerror", None) or mistake
+        raise OSError(f"{called} cannot be read ({reason}); allowed: {mend}") from None
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(f"{called} is a folder; allowed: {mend}")
+    if not stat.S_ISREG(mode):
+        raise OSError(f"{called} is a pipe or a device; allowed: {mend}")
 
 
 def read_object(
@@ -54,7 +84,8 @@ def read_object(
         ValueError: for what is not text, not JSON or no object, for NaN and inf, and keys that stand twice.
         OSError: if it cannot be read.
     """
-    called = os.fspath(path) if called is None else called
+    called = one_line(os.fspath(path) if called is None else called)
+    require_file(path, called, mend)
     text = read_text(path, called=called, kind="JSON", largest=largest)
     if not text.strip():
         raise ValueError(f"{called} is not JSON: it is empty; allowed: {mend}")
@@ -74,38 +105,55 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """An object whose every key stands once."""
     made = dict(pairs)
     if len(made) < len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f"the key {twice!r} stands twice in one object")
+        [(twice, _)] = Counter(key for key, _ in pairs).most_common(1)
+        raise ValueError(f"the key {shown(twice)} stands twice in one object")
     return made
 
 
 def _require_sane(content: dict[str, Any], called: str) -> None:
     """Refuse what Python reads but JSON does not know, with the place where it stands."""
-    parts: list[tuple[str, Any, int]] = [("", content, 0)]
-    while parts:
-        place, value, depth = parts.pop()
-        if depth > DEEPEST:
+    place: list[str | int] = []
+    levels = [_steps(content)]
+    while levels:
+        for step, value in levels[-1]:
+            place[len(levels) - 1 :] = [step]
+            if isinstance(step, str):
+                _require_text(step, called, place[:-1])
+            if isinstance(value, str):
+                _require_text(value, called, place)
+            elif isinstance(value, float) and not math.isfinite(value):
+                name = "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
+                raise ValueError(
+                    f"{called} is not JSON: {_place_text(place)} = {name} is not a number; allowed: finite numbers"
+                )
+            elif isinstance(value, dict | list):
+                levels.append(_steps(value))
+                break
+        else:
+            levels.pop()
+        if len(levels) > DEEPEST:
             raise ValueError(f"{called} is not JSON that can be read: it is nested too deep; allowed: {DEEPEST} levels")
-        if isinstance(value, dict):
-            for key in value:
-                _require_text(key, called, place)
-            parts += [(f"{place}.{key}" if place else key, one, depth + 1) for key, one in value.items()]
-        elif isinstance(value, list):
-            parts += [(f"{place}[{number}]", one, depth + 1) for number, one in enumerate(value)]
-        elif isinstance(value, float) and not math.isfinite(value):
-            name = "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
-            raise ValueError(f"{called} is not JSON: {place} = {name} is not a number; allowed: finite numbers")
-        elif isinstance(value, str):
-            _require_text(value, called, place)
 
 
-def _require_text(text: str, called: str, place: str) -> None:
+def _steps(value: dict[str, Any] | list[Any]) -> Iterator[tuple[str | int, Any]]:
+    """Keys or numbers of what an object or a list holds, and what that is."""
+    return iter(value.items()) if isinstance(value, dict) else enumerate(value)
+
+
+def _require_text(text: str, called: str, place: Sequence[str | int]) -> None:
     """Refuse halves of characters, which no file could hold."""
     try:
         text.encode()
     except UnicodeEncodeError as mistake:
-        raise ValueError(f"{called}: {place} holds {text!a}: {mistake.reason}; allowed: text in UTF-8") from None
+        raise ValueError(
+            f"{called}: {_place_text(place)} holds {shown(text)}: {mistake.reason}; allowed: text in UTF-8"
+        ) from None
+
+
+def _place_text(place: Sequence[str | int]) -> str:
+    """A place as one reads it, `strokes[0].frequency`; made for an error only, as keys may be long and many."""
+    steps = (f"[{step}]" if isinstance(step, int) else f".{one_line(step, LONGEST_SHOWN)}" for step in place)
+    return one_line("".join(steps).removeprefix("."))
 
 
 def _kind(value: object) -> str:

@@ -11,6 +11,26 @@ import numpy as np
 from flapenv.aero.arrays import Real, as_numpy, is_tensor
 
 T = TypeVar("T")
+LONGEST_SHOWN, LONGEST_LINE = 80, 1000
+"""Letters of a value in an error, and of a whole error; what is longer is cut in the middle."""
+
+
+def one_line(text: object, most: int = LONGEST_LINE) -> str:
+    """A text on one line that changes no screen: what does not print is escaped, the middle of much left out.
+
+    Args:
+        text: a text, a path or a mistake.
+        most: letters from which on it is cut.
+    """
+    whole = str(text)
+    if len(whole) > most:
+        whole = f"{whole[: most * 2 // 3]} ... {whole[-most // 3 :]}"
+    return "".join(one if one.isprintable() else ascii(one)[1:-1] for one in whole)
+
+
+def shown(value: object) -> str:
+    """A value of unknown origin as an error shows it."""
+    return one_line(repr(value), LONGEST_SHOWN)
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
@@ -30,7 +50,9 @@ def record(cls: type[T]) -> type[T]:
     def checked_init(self: Any, **values: Any) -> None:
         for name, value in values.items():
             if name not in known:
-                raise TypeError(f"{made.__name__} has no field {name!r} (got {value!r}); {allowed(name, known)}")
+                raise TypeError(
+                    f"{made.__name__} has no field {shown(name)} (got {shown(value)}); {allowed(name, known)}"
+                )
         missing = [name for name in needed if name not in values]
         if missing:
             raise TypeError(f"{made.__name__} needs {', '.join(missing)}; its fields are {', '.join(known)}")
@@ -43,7 +65,7 @@ def record(cls: type[T]) -> type[T]:
 def allowed(name: object, names: Iterable[str]) -> str:
     """The end of an error message: what may stand in the place of `name`, and the nearest guess."""
     names = list(names)
-    near = difflib.get_close_matches(str(name), names, n=1)
+    near = difflib.get_close_matches(str(name)[:LONGEST_SHOWN], names, n=1)
     guess = f"; did you mean {near[0]!r}?" if near else ""
     return f"allowed: {', '.join(names)}{guess}"
 
@@ -56,7 +78,7 @@ def require_name(field: str, value: object, names: Iterable[str]) -> str:
     """
     names = list(names)
     if not isinstance(value, str) or value not in names:
-        raise ValueError(f"{field} = {value!r} is unknown; {allowed(value, names)}")
+        raise ValueError(f"{field} = {shown(value)} is unknown; {allowed(value, names)}")
     return value
 
 
@@ -98,7 +120,7 @@ def require_real(
     except (TypeError, ValueError, OverflowError):  # ragged, or too large for a float
         numbers = np.empty(0)
     if not numbers.size:
-        raise TypeError(f"{field} = {value!r} is not a real number or an array of them; allowed: {where}")
+        raise TypeError(f"{field} = {shown(value)} is not a real number or an array of them; allowed: {where}")
     bad = ~np.isfinite(numbers)
     bad |= (numbers <= low) if open_low else (numbers < low)
     bad |= (numbers >= high) if open_high else (numbers > high)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from flapenv.aero.checks import allowed
+from flapenv.aero.checks import allowed, one_line, shown
 from flapenv.read_json import read_text
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)
@@ -37,6 +37,7 @@ def read_columns(
         ValueError: for a table that is anything else, naming the file, the line and the column.
         OSError: if it cannot be read.
     """
+    called = one_line(path)
     text = read_text(path)
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     rows: list[dict[str, float | str]] = []
@@ -46,17 +47,19 @@ def read_columns(
             if not any(cell.strip() for cell in cells):
                 continue
             if not header:
-                header = _checked_header([cell.strip() for cell in cells], units, names, str(path))
+                header = _checked_header([cell.strip() for cell in cells], units, names, called)
                 continue
             if len(rows) == most:
-                raise ValueError(f"{path} has more than {most:,} rows; allowed: up to {most:,}")
-            rows.append(_row(cells, header, units, f"{path} line {reader.line_num}"))
+                raise ValueError(f"{called} has more than {most:,} rows; allowed: up to {most:,}")
+            rows.append(_row(cells, header, units, f"{called} line {reader.line_num}"))
     except csv.Error as mistake:
-        raise ValueError(f"{path} line {reader.line_num} is not CSV: {mistake}; allowed: {_expected(units)}") from None
+        raise ValueError(
+            f"{called} line {reader.line_num} is not CSV: {mistake}; allowed: {_expected(units)}"
+        ) from None
     if not header:
-        raise ValueError(f"{path} is empty; allowed: a header {_expected(units)} and rows of numbers")
+        raise ValueError(f"{called} is empty; allowed: a header {_expected(units)} and rows of numbers")
     if not rows:
-        raise ValueError(f"{path} has a header but no rows; allowed: at least one")
+        raise ValueError(f"{called} has a header but no rows; allowed: at least one")
     return rows
 
 
@@ -65,36 +68,38 @@ def _expected(units: Mapping[str, str]) -> str:
     return ",".join(heading(name, unit) for name, unit in units.items())
 
 
-def _checked_header(cells: list[str], units: Mapping[str, str], names: tuple[str, ...], path: str) -> list[str]:
+def _checked_header(cells: list[str], units: Mapping[str, str], names: tuple[str, ...], called: str) -> list[str]:
     """Names of the columns, once each cell says a known name and its unit."""
     if len(cells) == 1 and ";" in cells[0]:
-        raise ValueError(f"{path}: columns are parted by semicolons; allowed: commas, and points in numbers")
+        raise ValueError(f"{called}: columns are parted by semicolons; allowed: commas, and points in numbers")
     found = []
     for cell in cells:
         name, bracket, unit = (part.strip() for part in cell.partition("["))
-        unit = unit.removesuffix("]").strip()
+        closed, unit = unit.endswith("]"), unit.removesuffix("]").strip()
         if name in names and not bracket:
             found.append(name)
             continue
         if name not in units:
             raise ValueError(
-                f"{path}: unknown column {cell!r}; {allowed(cell, [*names, *_expected(units).split(',')])}"
+                f"{called}: unknown column {shown(cell)}; {allowed(cell, [*names, *_expected(units).split(',')])}"
             )
         if not bracket:
             wanted = heading(name, units[name])
-            raise ValueError(f"{path}: column {cell!r} has no unit; allowed: {wanted!r}, so that no unit is mistaken")
-        if unit != units[name]:
             raise ValueError(
-                f"{path}: column {cell!r} is not in {units[name]}; allowed: {heading(name, units[name])!r}; convert "
-                "the numbers and say so"
+                f"{called}: column {shown(cell)} has no unit; allowed: {wanted!r}, so that no unit is mistaken"
+            )
+        if unit != units[name] or not closed:
+            raise ValueError(
+                f"{called}: column {shown(cell)} is not in {units[name]}; allowed: {heading(name, units[name])!r}; "
+                "convert the numbers and say so"
             )
         found.append(name)
     for name in found:
         if found.count(name) > 1:
-            raise ValueError(f"{path}: column {name!r} stands twice; allowed: once")
+            raise ValueError(f"{called}: column {shown(name)} stands twice; allowed: once")
     missing = [heading(name, unit) for name, unit in units.items() if name not in found]
     if missing:
-        raise ValueError(f"{path}: no column {', '.join(missing)}; allowed: a header {_expected(units)}")
+        raise ValueError(f"{called}: no column {', '.join(missing)}; allowed: a header {_expected(units)}")
     return found
 
 
@@ -109,6 +114,6 @@ def _row(cells: list[str], header: list[str], units: Mapping[str, str], where: s
             row[name] = text
             continue
         if not (NUMBER.fullmatch(text) and math.isfinite(float(text))):
-            raise ValueError(f"{where}: {name} = {text!r} is not a number; allowed: a finite number such as 0.5")
+            raise ValueError(f"{where}: {name} = {shown(text)} is not a number; allowed: a finite number such as 0.5")
         row[name] = float(text)
     return row

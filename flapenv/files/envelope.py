@@ -7,11 +7,11 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from flapenv.aero.checks import allowed, is_single
+from flapenv.aero.checks import LONGEST_SHOWN, allowed, is_single, one_line, shown
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.insects import Insect
-from flapenv.whole_file import whole_file
+from flapenv.read_json import require_file
 
 VERSION = 1
 """Of both formats; a file of another one is refused."""
@@ -25,11 +25,11 @@ WING_UNITS = {"mass": "kg", "length": "m", "frequency": "Hz", "angle": "rad", "s
 
 @contextlib.contextmanager
 def errors_of(what: object) -> Iterator[None]:
-    """Let `TypeError` and `ValueError` begin with `what` they are of."""
+    """Let `TypeError` and `ValueError` begin with `what` they are of, in one line of limited length."""
     try:
         yield
     except (TypeError, ValueError) as mistake:
-        raise type(mistake)(f"{what}: {mistake}") from None
+        raise type(mistake)(f"{one_line(what)}: {one_line(mistake)}") from None
 
 
 def existing(path: str | os.PathLike[str], mend: str) -> Path:
@@ -37,15 +37,12 @@ def existing(path: str | os.PathLike[str], mend: str) -> Path:
 
     Raises:
         TypeError: if it is no path.
-        OSError: if there is none, or a folder.
+        OSError: if there is none, or a folder, a pipe or a device.
     """
     if not isinstance(path, str | os.PathLike):
         raise TypeError(f"path = {path!r} is not allowed; allowed: a path of {mend}")
     found = Path(path)
-    if found.is_dir():
-        raise IsADirectoryError(f"{found} is a folder; allowed: {mend}")
-    if not found.exists():
-        raise FileNotFoundError(f"{found} does not exist; allowed: {mend}")
+    require_file(found, one_line(found), mend)
     return found
 
 
@@ -57,22 +54,25 @@ def require_format(content: Mapping[str, Any], name: str, units: Mapping[str, st
     """
     told = content.get("format")
     if told != name:
-        raise ValueError(f"format = {told!r} is not allowed; allowed: {name!r}, a file that says what it is")
+        raise ValueError(f"format = {shown(told)} is not allowed; allowed: {name!r}, a file that says what it is")
     version = content.get("version")
     if isinstance(version, bool) or version != VERSION:
-        raise ValueError(f"version = {version!r} is not allowed; allowed: {VERSION}")
+        raise ValueError(f"version = {shown(version)} is not allowed; allowed: {VERSION}")
     require_units(content.get("units"), units)
 
 
 def require_units(told: object, units: Mapping[str, str]) -> None:
     """Refuse other units than these: nothing is converted, so nothing can be converted wrongly."""
     if not isinstance(told, dict):
-        raise ValueError(f"units = {told!r} are not allowed; allowed: {json.dumps(dict(units), ensure_ascii=False)}")
+        raise ValueError(
+            f"units = {shown(told)} are not allowed; allowed: {json.dumps(dict(units), ensure_ascii=False)}"
+        )
     require_keys(told, units, needed=units, what="units")
     for name, unit in units.items():
         if told[name] != unit:
             raise ValueError(
-                f"unit of {name} = {told[name]!r} is not allowed; allowed: {unit!r}; convert the numbers and say so"
+                f"unit of {name} = {shown(told[name])} is not allowed; allowed: {unit!r}; convert the numbers "
+                "and say so"
             )
 
 
@@ -80,7 +80,7 @@ def require_keys(content: Mapping[str, Any], known: Collection[str], *, needed: 
     """Refuse unknown keys and the lack of those that are needed."""
     for key in content:
         if key not in known:
-            raise ValueError(f"{what}: unknown key {key!r}; {allowed(key, known)}")
+            raise ValueError(f"{what}: unknown key {shown(key)}; {allowed(key, known)}")
     missing = [key for key in needed if key not in content]
     if missing:
         raise ValueError(f"{what}: {', '.join(missing)} not told; its keys are {', '.join(known)}")
@@ -93,7 +93,8 @@ def require_number(field: str, value: object) -> float:
         TypeError: for anything else.
     """
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise TypeError(f"{field} = {json.dumps(value, ensure_ascii=False)} is not a number; allowed: one number")
+        told = one_line(json.dumps(value, ensure_ascii=False), LONGEST_SHOWN)
+        raise TypeError(f"{field} = {told} is not a number; allowed: one number")
     return value
 
 
@@ -112,11 +113,6 @@ def require_single(part: Stroke | Insect) -> None:
         raise ValueError(f"name = {name[:LONGEST_NAME]!r} is not allowed; allowed: {LONGEST_NAME} visible letters")
 
 
-def to_text(content: Mapping[str, Any]) -> str:
-    """JSON that people can read, whose numbers come back to the last digit."""
-    return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-
-
 def require_place(path: Path) -> None:
     """Refuse a path that no file can be written to.
 
@@ -127,13 +123,3 @@ def require_place(path: Path) -> None:
         raise IsADirectoryError(f"{path} is a folder; allowed: a file")
     if not path.parent.is_dir():
         raise FileNotFoundError(f"{path}: {path.parent} is not a folder; allowed: one that exists")
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a text, whole or not at all.
-
-    Raises:
-        OSError: if it cannot be written.
-    """
-    with whole_file(path) as beside:
-        beside.write_text(text, encoding="utf-8", newline="")

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from flapenv.aero.checks import record, require_name
+from flapenv.aero.checks import record, require_name, shown
 from flapenv.aero.stroke import Stroke
 from flapenv.files.columns import heading, read_columns
 from flapenv.files.envelope import (
@@ -20,11 +20,10 @@ from flapenv.files.envelope import (
     require_number,
     require_place,
     require_single,
-    to_text,
-    write_text,
 )
 from flapenv.insects import INSECTS, as_insect, described, load_insect
 from flapenv.read_json import read_object
+from flapenv.whole_file import json_text, write_text
 
 FORMAT = "flapenv-strokes"
 MOST_STROKES = 10_000
@@ -109,7 +108,7 @@ def strokes_to_text(strokes: Sequence[NamedStroke]) -> str:
         {"insect": None if one.insect is None else described(one.insect), **_numbers(one.stroke)}
         for one in _checked(strokes)
     ]
-    return to_text({"format": FORMAT, "version": VERSION, "units": STROKE_UNITS, "strokes": entries})
+    return json_text({"format": FORMAT, "version": VERSION, "units": STROKE_UNITS, "strokes": entries})
 
 
 def stroke_of(fields: object, where: str) -> Stroke:
@@ -120,7 +119,7 @@ def stroke_of(fields: object, where: str) -> Stroke:
         ValueError: for an unknown or missing field, or a number out of range.
     """
     if not isinstance(fields, dict):
-        raise TypeError(f"{where} = {fields!r} is not allowed; allowed: an object with {', '.join(STROKE_UNITS)}")
+        raise TypeError(f"{where} = {shown(fields)} is not allowed; allowed: an object with {', '.join(STROKE_UNITS)}")
     require_keys(fields, STROKE_UNITS, needed=STROKE_UNITS, what=where)
     with errors_of(where):
         return Stroke(**{name: require_number(name, value) for name, value in fields.items()})
@@ -155,7 +154,7 @@ def _from_content(content: Mapping[str, Any]) -> tuple[NamedStroke, ...]:
     require_keys(content, KEYS, needed=KEYS, what="the file")
     entries = content["strokes"]
     if not isinstance(entries, list):
-        raise TypeError(f"strokes = {entries!r} are not allowed; allowed: a list of objects")
+        raise TypeError(f"strokes = {shown(entries)} are not allowed; allowed: a list of objects")
     if not 1 <= len(entries) <= MOST_STROKES:
         raise ValueError(f"strokes holds {len(entries):,}; allowed: from 1 to {MOST_STROKES:,}")
     return tuple(_entry(entry, f"strokes[{number}]") for number, entry in enumerate(entries))
@@ -164,7 +163,7 @@ def _from_content(content: Mapping[str, Any]) -> tuple[NamedStroke, ...]:
 def _entry(entry: object, where: str) -> NamedStroke:
     """One entry of the list."""
     if not isinstance(entry, dict):
-        raise TypeError(f"{where} = {entry!r} is not allowed; allowed: an object with {', '.join(STROKE_UNITS)}")
+        raise TypeError(f"{where} = {shown(entry)} is not allowed; allowed: an object with {', '.join(STROKE_UNITS)}")
     require_keys(entry, ("insect", *STROKE_UNITS), needed=STROKE_UNITS, what=where)
     stroke = stroke_of({name: value for name, value in entry.items() if name != "insect"}, where)
     with errors_of(where):

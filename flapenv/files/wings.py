@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, shown
 from flapenv.aero.wing import Wing
 from flapenv.files.columns import read_columns
 from flapenv.files.envelope import (
@@ -18,14 +18,13 @@ from flapenv.files.envelope import (
     require_keys,
     require_place,
     require_single,
-    to_text,
-    write_text,
 )
 from flapenv.files.plausible import FASTEST, require_plausible
 from flapenv.files.strokes import stroke_of
 from flapenv.insects import INSECTS, Insect, described
 from flapenv.problem import HoverProblem, StrokeBox
 from flapenv.read_json import read_object
+from flapenv.whole_file import json_text, write_text
 
 FORMAT = "flapenv-wing"
 MOST_RADII = 10_000
@@ -65,7 +64,7 @@ class WingFile:
             )
         require_plausible(self.insect)
         if not isinstance(self.limits, Mapping):
-            raise TypeError(f"limits = {self.limits!r} are not allowed; allowed: an object of [lower, upper]")
+            raise TypeError(f"limits = {shown(self.limits)} are not allowed; allowed: an object of [lower, upper]")
         with errors_of("limits"):
             for name, bounds in self.limits.items():
                 if bounds is None:
@@ -152,7 +151,7 @@ def write_wing(path: str | os.PathLike[str], wing_file: WingFile) -> None:
     require_place(found)
     parts = {name: _told(value) for name, value in wing_file.insect.to_dict().items() if value is not None}
     limits = {"limits": {name: list(bounds) for name, bounds in wing_file.limits.items()}} if wing_file.limits else {}
-    write_text(found, to_text({"format": FORMAT, "version": VERSION, "units": WING_UNITS, **parts, **limits}))
+    write_text(found, json_text({"format": FORMAT, "version": VERSION, "units": WING_UNITS, **parts, **limits}))
 
 
 def _told(value: Any) -> Any:
@@ -164,7 +163,7 @@ def _wing(fields: object, folder: Path) -> Wing:
     """A wing from three numbers, from a planform in metres, or from one in a file beside."""
     if not isinstance(fields, dict):
         raise TypeError(
-            f"{fields!r} is not allowed; allowed: an object with length, mean_chord and r1_hat, or a planform"
+            f"{shown(fields)} is not allowed; allowed: an object with length, mean_chord and r1_hat, or a planform"
         )
     if "planform_file" in fields:
         require_keys(fields, ("planform_file", *OF_A_TABLE), needed=(), what="a wing with a planform_file")
@@ -197,9 +196,11 @@ def _beside(name: object, folder: Path) -> Path:
         ValueError: for a path that leaves the folder.
         OSError: if there is no such file.
     """
-    if not isinstance(name, str) or not name:
-        raise TypeError(f"planform_file = {name!r} is not allowed; allowed: the name of a CSV file beside this one")
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise TypeError(
+            f"planform_file = {shown(name)} is not allowed; allowed: the name of a CSV file beside this one"
+        )
     path = folder / name
     if not path.resolve().is_relative_to(folder.resolve()):
-        raise ValueError(f"planform_file = {name!r} leaves the folder of the wing file; allowed: a file beside it")
+        raise ValueError(f"planform_file = {shown(name)} leaves the folder of the wing file; allowed: a file beside it")
     return existing(path, "a CSV file with the columns radius [m],chord [m]")

@@ -6,7 +6,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flapenv import Stroke, load_insect
-from flapenv.aero.checks import is_single, require_count, require_flag, require_real, require_scalar
+from flapenv.aero.checks import (
+    is_single,
+    one_line,
+    require_count,
+    require_flag,
+    require_name,
+    require_real,
+    require_scalar,
+    shown,
+)
 
 
 @given(st.floats(allow_nan=True, allow_infinity=True))
@@ -63,3 +72,22 @@ def test_records_are_single_when_no_part_of_them_has_axes() -> None:
         for field in vars(record).keys() - {"planform", "pitch_axis"}:
             spread = dataclasses.replace(record, **{field: np.full(2, getattr(record, field))})
             assert not is_single(dataclasses.replace(hawkmoth, **{part: spread}))
+
+
+@given(st.text())
+def test_a_text_is_shown_on_one_line_in_full_where_it_is_short(text: str) -> None:
+    assert one_line(text).isprintable()
+    assert one_line(text) == text or not text.isprintable()
+    assert shown(text).isprintable()
+    assert one_line("a\nb") == "a\\nb"
+
+
+def test_of_much_the_ends_are_shown() -> None:
+    text = one_line(f"begin{'.' * 10**6}end")
+    assert text.startswith("begin")
+    assert text.endswith("end")
+    assert len(text) < 1100
+    assert len(shown([1] * 10**5)) < 100
+    with pytest.raises(ValueError, match=r"name = 'aaa.* is unknown; allowed: b") as caught:
+        require_name("name", "a" * 10**6, ["b"])
+    assert len(str(caught.value)) < 200

@@ -192,6 +192,7 @@ ROW = "hawkmoth,26.3,1.05,1.01,0,5,1.57"
         ("", "is empty; allowed: a header frequency"),
         (f"{HEADER}\n", "has a header but no rows"),
         (HEADER.replace(" [rad]", " [deg]", 1), r"column 'flap_amplitude \[deg\]' is not in rad; .*convert"),
+        (HEADER.replace(" [Hz]", " [Hz"), "column 'frequency .Hz' is not in Hz; allowed: 'frequency .Hz.'"),
         (HEADER.replace(" [Hz]", ""), "column 'frequency' has no unit; allowed: 'frequency .Hz.'"),
         (HEADER.replace(",pitch_phase [rad]", ""), r"no column pitch_phase \[rad\]"),
         (f"{HEADER},pitch_phase [rad]", "column 'pitch_phase' stands twice"),

@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -207,6 +208,7 @@ def with_stroke(**changes: Any) -> dict[str, Any]:
         (with_table([0, 0.03], [0.01, 0.01], round=True), "planform: unknown key 'round'; .*did you mean 'rounded'"),
         (with_table([0.0] * (MOST_RADII + 1), [0.01]), "wing: radius has 10,001 rows; allowed: up to 10,000"),
         (valid() | {"wing": {"planform_file": 3}}, "wing: planform_file = 3 is not allowed"),
+        (valid() | {"wing": {"planform_file": "a\0b"}}, r"wing: planform_file = 'a.x00b' is not allowed"),
         (valid() | {"wing": {"planform_file": "../b.csv"}}, "planform_file = '../b.csv' leaves the folder"),
         (valid() | {"wing": {"planform_file": "/etc/passwd"}}, "planform_file = '/etc/passwd' leaves the folder"),
         (valid() | {"wing": {"planform_file": "link.csv"}}, "planform_file = 'link.csv' leaves the folder"),
@@ -250,6 +252,11 @@ def test_what_is_wrong_with_a_wing_is_told_in_one_line_that_names_the_file(
 def test_missing_files_are_named(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=r"no.json does not exist; allowed: a wing file, as docs"):
         read_wing(tmp_path / "no.json")
+    os.mkfifo(tmp_path / "pipe.csv")
+    with pytest.raises(OSError, match=r"pipe.csv is a pipe or a device; allowed: a CSV file with the columns radius"):
+        read_wing(written(valid() | {"wing": {"planform_file": "pipe.csv"}}, tmp_path))
+    with pytest.raises(OSError, match=r"aaa cannot be read .File name too long.; allowed: a CSV file"):
+        read_wing(written(valid() | {"wing": {"planform_file": "a" * 5000}}, tmp_path))
     path = written(valid() | {"wing": {"planform_file": "no.csv"}}, tmp_path)
     with pytest.raises(FileNotFoundError, match=r"no.csv does not exist; allowed: a CSV file with the columns radius"):
         read_wing(path)
