@@ -1,0 +1,88 @@
+"""The least power against the weight carried, with what was learned and what insects do."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import plotly.graph_objects as go
+
+from agents.plots.style import STYLES, styled
+from flapenv.assessment import StrokeAssessment
+from flapenv.drawing import GREY
+from flapenv.trade_off import TradeOff
+
+HEIGHT = 520
+"""Of the figure [px]."""
+
+
+def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -> go.Figure:
+    """Fronts of several insects on one scale: power over the insect's least power for its full weight.
+
+    The front of an insect passes through (1, 1); no stroke of the box lies below it. Own strokes may lie outside of
+    the box, and carry what they carry.
+
+    Args:
+        assessments: one of each insect.
+        fronts: of the same insects against weight support, in the same order.
+    """
+    figure = go.Figure()
+    for number, (one, curve) in enumerate(zip(assessments, fronts, strict=True)):
+        figure.add_scatter(
+            name="least power",
+            legendgroup="front",
+            showlegend=number == 0,
+            x=curve.values,
+            y=curve.specific_power / one.best.specific_power,
+            customdata=curve.specific_power,
+            mode="lines",
+            line={"color": GREY, "width": 1.5},
+            hovertemplate=f"{_plain(one.insect.name)}: %{{x:.3f}} weights for %{{customdata:.2f}} W/kg"
+            "<extra>least power</extra>",
+        )
+    own = [(one.own_weight_support, one.own_specific_power) for one in assessments]
+    learned = [(one.weight_support, one.specific_power) for one in assessments]
+    for label, points in (("own", own), ("learned", learned)):
+        named = label == "own"
+        figure.add_scatter(
+            name="own stroke" if named else label,
+            x=[weight for weight, _ in points],
+            y=[power / one.best.specific_power for (_, power), one in zip(points, assessments, strict=True)],
+            customdata=[[one.insect.name, power] for (_, power), one in zip(points, assessments, strict=True)],
+            text=[_plain(one.insect.name) for one in assessments] if named else None,
+            textposition="top center",
+            textfont={"size": 11},
+            mode="markers+text" if named else "markers",
+            marker=STYLES[label].marker,
+            hovertemplate=f"%{{customdata[0]}}: %{{x:.3f}} weights for %{{customdata[1]:.2f}} W/kg"
+            f"<extra>{label}</extra>",
+        )
+    styled(figure, HEIGHT)
+    carried = [weight for weight, _ in (*own, *learned)]
+    figure.update_layout(
+        xaxis={
+            "title": {"text": "weight support Λ"},
+            "range": [min(0.75, *carried) - 0.05, max(1.5, *carried) + 0.05],
+        },
+        yaxis={"title": {"text": "power over the least for the full weight"}, "rangemode": "tozero"},
+    )
+    _mark_full_weight(figure)
+    return figure
+
+
+def _plain(name: str) -> str:
+    """A name that Plotly takes for text, not for markup or a template."""
+    return name.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("%{", "%&#123;")
+
+
+def _mark_full_weight(figure: go.Figure) -> None:
+    """A line where exactly the weight is carried."""
+    figure.add_vline(x=1.0, line={"color": GREY, "width": 1, "dash": "dot"})
+
+
+def below_front(one: StrokeAssessment, curve: TradeOff) -> float:
+    """How far a stroke lies above the front at its own weight support [W/kg]; negative would be below it.
+
+    The front is interpolated along power laws, which it follows exactly while the frequency is free.
+    """
+    known = curve.feasible & (curve.values > 0)
+    logs = np.interp(np.log(one.weight_support), np.log(curve.values[known]), np.log(curve.specific_power[known]))
+    return float(one.specific_power - np.exp(logs))
