@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.comparison import InsectResult
+from flapenv.assessment import StrokeAssessment
 from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw_strokes(results: Sequence[InsectResult]) -> "Figure":
+def draw_strokes(results: Sequence[StrokeAssessment]) -> "Figure":
     """Flapping and pitching angle over the cycle, learned against optimal, one panel an insect."""
     require_matplotlib()
     from matplotlib.figure import Figure

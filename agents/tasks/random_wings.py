@@ -3,7 +3,8 @@
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from agents.comparison import Comparison, comparison_table
+from agents.assessment_table import assessment_table
+from agents.comparison import Comparison
 from agents.predictor import Predictor
 from agents.tasks.described import described
 from agents.tasks.task import Verdict
@@ -93,12 +94,13 @@ class RandomWingsTask:
         return Verdict(
             mean=test.mean,
             worst=test.most,
-            text=f"{wings_table(flown)}\n\n{which}:\n{comparison_table(insects)}",
+            text=f"{wings_table(flown)}\n\n{which}:\n{assessment_table(insects)}",
             results={
                 "problem": self.problem.to_dict(),
                 "wings": {split: flights.to_dict() for split, flights in flown.items()},
                 "insects": {one.insect.name: one.to_dict() for one in insects},
             },
+            assessments=tuple(insects),
         )
 
     def draw(self, policy: Predictor) -> "Figure":
