@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
+from agents.plots.names import plain
 from agents.plots.style import STYLES, styled
 from flapenv.assessment import StrokeAssessment
 from flapenv.drawing import GREY
@@ -35,7 +36,7 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -
             customdata=curve.specific_power,
             mode="lines",
             line={"color": GREY, "width": 1.5},
-            hovertemplate=f"{_plain(one.insect.name)}: %{{x:.3f}} weights for %{{customdata:.2f}} W/kg"
+            hovertemplate=f"{plain(one.insect.name)}: %{{x:.3f}} weights for %{{customdata:.2f}} W/kg"
             "<extra>least power</extra>",
         )
     own = [(one.own_weight_support, one.own_specific_power) for one in assessments]
@@ -46,8 +47,8 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -
             name="own stroke" if named else label,
             x=[weight for weight, _ in points],
             y=[power / one.best.specific_power for (_, power), one in zip(points, assessments, strict=True)],
-            customdata=[[one.insect.name, power] for (_, power), one in zip(points, assessments, strict=True)],
-            text=[_plain(one.insect.name) for one in assessments] if named else None,
+            customdata=[[plain(one.insect.name), power] for (_, power), one in zip(points, assessments, strict=True)],
+            text=[plain(one.insect.name) for one in assessments] if named else None,
             textposition="top center",
             textfont={"size": 11},
             mode="markers+text" if named else "markers",
@@ -68,17 +69,12 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -
     return figure
 
 
-def _plain(name: str) -> str:
-    """A name that Plotly takes for text, not for markup or a template."""
-    return name.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("%{", "%&#123;")
-
-
 def _mark_full_weight(figure: go.Figure) -> None:
     """A line where exactly the weight is carried."""
     figure.add_vline(x=1.0, line={"color": GREY, "width": 1, "dash": "dot"})
 
 
-def below_front(one: StrokeAssessment, curve: TradeOff) -> float:
+def above_front(one: StrokeAssessment, curve: TradeOff) -> float:
     """How far a stroke lies above the front at its own weight support [W/kg]; negative would be below it.
 
     The front is interpolated along power laws, which it follows exactly while the frequency is free.

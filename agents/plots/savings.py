@@ -1,51 +1,52 @@
 """How much less power learned strokes need than the insects' own, and how sure that is."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import plotly.graph_objects as go
 
+from agents.plots.names import plain
 from agents.plots.style import STYLES, styled
 from flapenv.assessment import StrokeAssessment
-from flapenv.drawing import BLUE, GREY, ORANGE
+from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE
 
-ROW_HEIGHT, FRAME_HEIGHT = 52, 130
+ROW_HEIGHT, FRAME_HEIGHT = 54, 150
 """Of an insect, and of everything around the bars [px]."""
-EQUAL, PUBLISHED, CFD = "at equal weight support", "own stroke as it is", "over CFD's power of the own stroke"
-"""Names of the three comparisons."""
+BY_CFD, BY_MODEL, AS_PUBLISHED = "of CFD's power", "of the model's, both carrying the weight", "of the model's, as published"
+"""Names of the three comparisons with the insect's own stroke."""
 
 
 def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
-    """Bars for each insect: the saving at equal weight support and over its own stroke as it is, with uncertainties.
+    """Bars for each insect: what is saved of the own stroke's power by CFD and by the model, in percent.
 
-    Whiskers are what the model's relative error against CFD at the insect's own stroke makes of the learned power, and
-    so of the saving: ±(1 - saving) times the uncertainty.
+    Whiskers are what the model's own error against CFD makes of the first.
 
     Args:
         assessments: one of each insect.
     """
-    names = [one.insect.name for one in assessments]
+    names = [plain(one.insect.name) for one in assessments]
     figure = go.Figure()
+    spans = [_percent(one.saving_uncertainty) for one in assessments]
+    whiskers = {"type": "data", "array": spans, "color": BLACK, "thickness": 1.5, "width": 4}
     for label, values, colour, pattern in (
-        (PUBLISHED, [one.saving_as_published for one in assessments], ORANGE, "/"),
-        (EQUAL, [one.saving for one in assessments], BLUE, ""),
+        (BY_CFD, [one.saving_to_cfd for one in assessments], BLUE, ""),
+        (BY_MODEL, [one.saving for one in assessments], ORANGE, "/"),
     ):
         figure.add_bar(
             name=label,
             y=names,
-            x=[None if value is None else 100 * value for value in values],
+            x=[_percent(value) for value in values],
             orientation="h",
             marker={"color": colour, "pattern": {"shape": pattern, "fgcolor": "white", "size": 6}},
-            error_x=_whiskers(values, assessments),
-            hovertemplate="%{y}: %{x:.1f} % ± %{error_x.array:.1f} %<extra>" + label + "</extra>",
+            error_x=whiskers if label == BY_CFD else None,
+            hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{label}</extra>",
         )
     figure.add_scatter(
-        name=CFD,
+        name=AS_PUBLISHED,
         y=names,
-        x=[None if one.saving_to_cfd is None else 100 * one.saving_to_cfd for one in assessments],
+        x=[_percent(one.saving_as_published) for one in assessments],
         mode="markers",
-        marker=STYLES["CFD"].marker,
-        hovertemplate="%{y}: %{x:.1f} %<extra>" + CFD + "</extra>",
+        marker={**STYLES["learned"].marker, "color": GREEN, "symbol": "diamond"},
+        hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{AS_PUBLISHED}</extra>",
     )
     styled(figure, FRAME_HEIGHT + ROW_HEIGHT * len(names))
     figure.update_layout(
@@ -53,15 +54,12 @@ def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
         bargap=0.3,
         xaxis={"title": {"text": "power saved [%]"}, "zerolinewidth": 2},
         yaxis={"autorange": "reversed", "showgrid": False},
-        legend={"traceorder": "reversed"},
+        legend={"orientation": "v"},
+        margin={"t": 86},
     )
     return figure
 
 
-def _whiskers(values: Sequence[float | None], assessments: Sequence[StrokeAssessment]) -> dict[str, Any]:
-    """Uncertainties of savings as Plotly's error bars [%]."""
-    spans = [
-        None if value is None else 100 * (1 - value) * one.uncertainty
-        for value, one in zip(values, assessments, strict=True)
-    ]
-    return {"type": "data", "array": spans, "color": GREY, "thickness": 1.5, "width": 4}
+def _percent(value: float | None) -> float | None:
+    """A fraction in percent."""
+    return None if value is None else 100 * value
