@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 import plotly.graph_objects as go
 
 from flapenv.aero.checks import record
@@ -113,6 +114,13 @@ def styled(figure: go.Figure, height: int) -> go.Figure:
     """
     figure.update_layout(template=template(), height=height, autosize=True)
     return figure
+
+
+def rounded(values: Any) -> Any:
+    """Numbers to four significant digits, which no screen shows more of; lists of any depth, NaN as None."""
+    if np.ndim(values):
+        return [rounded(value) for value in values]
+    return float(f"{values:.4g}") if np.isfinite(values) else None
 
 
 def config() -> dict[str, Any]:
