@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
+from agents.assessment_table import LEARNED
 from agents.plots.names import plain
 from agents.plots.style import STYLES, styled
 from flapenv.assessment import StrokeAssessment
@@ -15,7 +16,7 @@ HEIGHT = 520
 """Of the figure [px]."""
 
 
-def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -> go.Figure:
+def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff], called: str = LEARNED) -> go.Figure:
     """Fronts of several insects on one scale: power over the insect's least power for its full weight.
 
     The front of an insect passes through (1, 1); no stroke of the box lies below it. Own strokes may lie outside of
@@ -24,6 +25,7 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -
     Args:
         assessments: one of each insect.
         fronts: of the same insects against weight support, in the same order.
+        called: what the strokes are, in a word.
     """
     figure = go.Figure()
     for number, (one, curve) in enumerate(zip(assessments, fronts, strict=True)):
@@ -41,10 +43,10 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -
         )
     own = [(one.own_weight_support, one.own_specific_power) for one in assessments]
     learned = [(one.weight_support, one.specific_power) for one in assessments]
-    for label, points in (("own", own), ("learned", learned)):
-        named = label == "own"
+    for label, points in (("own", own), (called, learned)):
+        named = points is own
         figure.add_scatter(
-            name="own stroke" if named else label,
+            name="own stroke" if named else plain(label),
             x=[weight for weight, _ in points],
             y=[power / one.best.specific_power for (_, power), one in zip(points, assessments, strict=True)],
             customdata=[[plain(one.insect.name), power] for (_, power), one in zip(points, assessments, strict=True)],
@@ -52,9 +54,9 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff]) -
             textposition="top center",
             textfont={"size": 11},
             mode="markers+text" if named else "markers",
-            marker=STYLES[label].marker,
+            marker=STYLES["own" if named else "learned"].marker,
             hovertemplate=f"%{{customdata[0]}}: %{{x:.3f}} weights for %{{customdata[1]:.2f}} W/kg"
-            f"<extra>{label}</extra>",
+            f"<extra>{plain(label)}</extra>",
         )
     styled(figure, HEIGHT)
     carried = [weight for weight, _ in (*own, *learned)]

@@ -1,0 +1,33 @@
+"""What a report is made of."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from agents.assessment_table import LEARNED
+from agents.tasks.task import Task, Verdict
+from flapenv.aero.checks import record
+
+
+@record
+class ReportContent:
+    """Everything that a report shows.
+
+    Attributes:
+        title: of the page: what was judged.
+        verdict: on it.
+        task: what it was judged on.
+        called: what the strokes are, in a word.
+        picture: the task's picture, a PNG file's bytes; None to leave it out.
+        curve: points of the learning curve, from `agents.curve_picture.read_curve`; empty where nothing was trained.
+        facts: what is needed to repeat it, by name, in the order shown: command, seed, versions.
+        config: the rest of it, as config.json keeps it.
+    """
+
+    title: str
+    verdict: Verdict
+    task: Task
+    called: str = LEARNED
+    picture: bytes | None = None
+    curve: Sequence[Mapping[str, float]] = ()
+    facts: Mapping[str, str]
+    config: Mapping[str, Any]
