@@ -51,7 +51,7 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff], c
             y=[power / one.best.specific_power for (_, power), one in zip(points, assessments, strict=True)],
             customdata=[[plain(one.insect.name), power] for (_, power), one in zip(points, assessments, strict=True)],
             text=[plain(one.insect.name) for one in assessments] if named else None,
-            textposition="top center",
+            textposition=_sides([weight for weight, _ in points]),
             textfont={"size": 11},
             mode="markers+text" if named else "markers",
             marker=STYLES["own" if named else "learned"].marker,
@@ -69,6 +69,12 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff], c
     )
     _mark_full_weight(figure)
     return figure
+
+
+def _sides(weights: Sequence[float]) -> list[str]:
+    """Names above and below their points in turn, so that neighbours do not cover each other."""
+    ranks = np.argsort(np.argsort(weights))
+    return ["bottom center" if rank % 2 else "top center" for rank in ranks]
 
 
 def _mark_full_weight(figure: go.Figure) -> None:

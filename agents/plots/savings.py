@@ -9,9 +9,13 @@ from agents.plots.style import STYLES, styled
 from flapenv.assessment import StrokeAssessment
 from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE
 
-ROW_HEIGHT, FRAME_HEIGHT = 54, 150
+ROW_HEIGHT, FRAME_HEIGHT = 42, 140
 """Of an insect, and of everything around the bars [px]."""
-BY_CFD, BY_MODEL, AS_PUBLISHED = "of CFD's power", "of the model's, both carrying the weight", "of the model's, as published"
+BY_CFD, BY_MODEL, AS_PUBLISHED = (
+    "of CFD's power",
+    "of the model's, both carrying the weight",
+    "of the model's, as published",
+)
 """Names of the three comparisons with the insect's own stroke."""
 
 
@@ -36,7 +40,7 @@ def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
             y=names,
             x=[_percent(value) for value in values],
             orientation="h",
-            marker={"color": colour, "pattern": {"shape": pattern, "fgcolor": "white", "size": 6}},
+            marker={"color": colour, "pattern": {"shape": pattern, "bgcolor": colour, "fgcolor": "white", "size": 6}},
             error_x=whiskers if label == BY_CFD else None,
             hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{label}</extra>",
         )

@@ -93,7 +93,7 @@ def sensitivities(optima: Sequence[Optimum]) -> go.Figure:
     )
     styled(figure, HEIGHT)
     figure.update_layout(
-        xaxis={"title": {"text": "what the step costs [% of the power]"}},
+        xaxis={"title": {"text": "cost of the step [% of the power]"}},
         yaxis={"autorange": "reversed", "showgrid": False},
         margin={"t": 12},
     )

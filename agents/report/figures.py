@@ -44,7 +44,9 @@ class PlacedFigure:
 def placed(figure: go.Figure, key: str, title: str, text: str) -> PlacedFigure:
     """A figure ready for the page."""
     height, made = int(figure.layout.height), figure.to_json(validate=False)
-    return PlacedFigure(key=re.sub(r"[^a-z0-9]+", "-", key.lower()), title=title, text=text, json=str(made), height=height)
+    return PlacedFigure(
+        key=re.sub(r"[^a-z0-9]+", "-", key.lower()), title=title, text=text, json=str(made), height=height
+    )
 
 
 def curve_figure(content: ReportContent) -> PlacedFigure | None:
@@ -53,7 +55,7 @@ def curve_figure(content: ReportContent) -> PlacedFigure | None:
         return None
     figure = learning_curve(content.curve, content.task.distance)
     text = (
-        f"{content.task.distance} of the policy without noise against the wingbeats it was trained on; dotted: 1 %. "
+        f"The policy's {content.task.distance}, without noise, against the wingbeats it was trained on; dotted: 1 %. "
         "Watched only: the last policy is the result."
     )
     return placed(figure, "learning-curve", "Learning curve", text)
@@ -102,8 +104,8 @@ def strokes_of(one: StrokeAssessment, called: str) -> dict[str, Stroke]:
     return {called: one.stroke, best: one.best.stroke, **own}
 
 
-def insect_figures(one: StrokeAssessment, called: str, number: int) -> list[PlacedFigure]:
-    """What the wing of one insect does.
+def insect_figures(one: StrokeAssessment, called: str, number: int) -> dict[str, PlacedFigure]:
+    """What the wing of one insect does, by a short name of what is shown.
 
     Args:
         one: its stroke.
@@ -113,31 +115,28 @@ def insect_figures(one: StrokeAssessment, called: str, number: int) -> list[Plac
     insect, model, strokes = one.insect, one.problem.model, strokes_of(one, called)
     beside = {label: stroke for label, stroke in strokes.items() if label in (called, "own")}
     names = ", ".join(strokes)
-    return [
-        placed(
+    drawn = {
+        "beat": (
             beat(insect, beside, model),
-            f"beat-{number}",
             "The wingbeat",
-            f"Wing section at r̂₂ R seen from the wing tip, dot at the leading edge, arrow for the force: {', '.join(beside)}. "
-            "Each is slowed so that a beat takes as long.",
+            f"Wing section at r̂₂ R seen from the wing tip, dot at the leading edge, arrow for the force: "
+            f"{', '.join(beside)}. Each is slowed so that a beat takes as long.",
         ),
-        placed(
+        "waveforms": (
             waveforms(insect, strokes, model),
-            f"waveforms-{number}",
             "Waveforms",
             f"Flapping angle φ, pitching angle θ and angle of attack α over the cycle: {names}.",
         ),
-        placed(
+        "forces": (
             forces(insect, strokes, model),
-            f"forces-{number}",
             "Force and power",
             f"Lift over weight and aerodynamic power over body mass, over the cycle: {names}.",
         ),
-        placed(
+        "terms": (
             terms(insect, one.stroke, model),
-            f"terms-{number}",
             f"Term by term: {called}",
             "Lift and power of the stroke by the blade element, term by term. Only the translational term counts in the "
             "table above; the others show what it leaves out.",
         ),
-    ]
+    }
+    return {key: placed(figure, f"{key}-{number}", *told) for key, (figure, *told) in drawn.items()}

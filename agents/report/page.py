@@ -48,14 +48,20 @@ class InsectPart:
         name: of the insect.
         heading: its powers in a line.
         strokes: the numbers of its strokes.
-        figures: of its wingbeat.
+        beat: the moving wing.
+        waveforms: angles over the cycle.
+        forces: lift and power over the cycle.
+        terms: the same by term.
         flags: what of it lies outside of the validated range.
     """
 
     name: str
     heading: str
     strokes: Table
-    figures: Sequence[PlacedFigure]
+    beat: PlacedFigure
+    waveforms: PlacedFigure
+    forces: PlacedFigure
+    terms: PlacedFigure
     flags: Sequence[str]
 
 
@@ -124,8 +130,8 @@ def _insect_part(one: StrokeAssessment, called: str, number: int) -> InsectPart:
             + ("" if one.cfd_power is None else f" (CFD {one.cfd_power:.0f})")
         ),
         strokes=strokes_table(strokes_of(one, called)),
-        figures=insect_figures(one, called, number),
         flags=one.flags,
+        **insect_figures(one, called, number),
     )
 
 

@@ -1,7 +1,7 @@
 // Draws each figure when it is first looked at, and all of them for the printer. The figures stand beside their places.
 "use strict";
 (() => {
-  const PRINTED = 660; // px, the width of a printed A4 page within its margins
+  const PRINTED = 680, PRINTED_PAIR = 460; // px, widths on an A4 page within its margins, alone and side by side
   const config = JSON.parse(document.getElementById("plot-config").textContent);
   const places = [...document.querySelectorAll(".plot")];
 
@@ -30,8 +30,9 @@
     opened = [...document.querySelectorAll("details:not([open])")];
     opened.forEach((details) => { details.open = true; });
     for (const place of places) {
-      if (place.dataset.drawn) Plotly.relayout(place, { width: PRINTED });
-      else draw(place, PRINTED);
+      const width = place.closest(".pair") ? PRINTED_PAIR : PRINTED;
+      if (place.dataset.drawn) Plotly.relayout(place, { width });
+      else draw(place, width);
     }
   });
   window.addEventListener("afterprint", () => {

@@ -132,12 +132,13 @@ def steps_table(strokes: Sequence[StrokeAssessment]) -> Table:
         costs, sides = step_costs(one.best), dict(one.best.active_bounds)
         marks = {"upper": " ↑", "lower": " ↓"}
         cells = [
-            f"{100 * costs[name]:.2f}{marks.get(sides.get(name, ''), '')}" if name in costs else "none" for name in STEPS
+            f"{100 * costs[name]:.2f}{marks.get(sides.get(name, ''), '')}" if name in costs else "none"
+            for name in STEPS
         ]
         rows.append((one.insect.name, *cells))
     return Table(
-        caption="What a small step from the optimum costs while the weight stays carried",
-        columns=(("insect", ""), *((step.text, "% of the power") for step in STEPS.values())),
+        caption="What a small step from the optimum costs while the weight stays carried, in percent of the power",
+        columns=(("insect", ""), *((step.text, "%") for step in STEPS.values())),
         rows=tuple(rows),
         note=(
             "↑ ↓: the optimum lies at the upper or lower bound of the box, and the step leads back into it. 0.00 without "

@@ -7,7 +7,6 @@ import numpy as np
 from agents.assessment_table import ranking_sentence
 from agents.report.content import ReportContent
 from flapenv.assessment import StrokeAssessment
-from flapenv.model import COEFFICIENTS
 
 
 def summary(content: ReportContent) -> list[str]:
@@ -20,8 +19,10 @@ def summary(content: ReportContent) -> list[str]:
         return told
     sentence = ranking_sentence(strokes, content.called)
     if sentence:
-        others = "other coefficient models, and power that is only paid where positive"
-        told.append(f"Does that hang on the model? {_sentence(sentence)} Those are {others}, both strokes at full weight.")
+        told.append(
+            f"Does that hang on the model? {_sentence(sentence)} The other models are other force coefficients and, where "
+            "the wing's mass is known, power without springs; both strokes carry the weight in each."
+        )
     return [*told, *_infeasible(strokes, content.called), *_outside(strokes)]
 
 
@@ -46,7 +47,11 @@ def _savings(strokes: Sequence[StrokeAssessment]) -> list[str]:
         saved = span([100 * (one.saving_to_cfd or 0) for one in known], 0)
         unsure = span([100 * (one.saving_uncertainty or 0) for one in known], 0)
         doubted = [one.insect.name for one in known if (one.saving_to_cfd or 0) <= (one.saving_uncertainty or 0)]
-        end = f"more than its uncertainty for all but {', '.join(doubted)}" if doubted else "each more than its uncertainty"
+        end = (
+            f"more than its uncertainty for all but {', '.join(doubted)}"
+            if doubted
+            else "each more than its uncertainty"
+        )
         told.append(f"That saves {saved} % of the power that CFD found for the own strokes, ± {unsure} points: {end}.")
     equal = [100 * one.saving for one in strokes if one.saving is not None]
     if equal:
@@ -95,11 +100,6 @@ def span(values: Sequence[float], digits: int) -> str:
     """Numbers as the range they span, "8.56 to 29.92", or as the one they all are."""
     low, high = (f"{end:.{digits}f}" for end in (np.min(values), np.max(values)))
     return low if low == high else f"{low} to {high}"
-
-
-def model_name(name: str) -> str:
-    """A model as one says it."""
-    return f"coefficients {name}" if name in COEFFICIENTS else name
 
 
 def _sentence(text: str) -> str:
