@@ -1,10 +1,11 @@
 """Assessed strokes as people read them: the table, what other models say, and what lies outside the validated range."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from flapenv.assessment import StrokeAssessment
+from flapenv.assessment.validity import Quantity
 from flapenv.tables import text_table
 
 LEARNED = "learned"
@@ -38,9 +39,9 @@ def assessment_table(results: Sequence[StrokeAssessment], called: str = LEARNED)
     )
     lines += [
         "±: the model's own error against CFD at the insect's stroke (without CFD, the rms of the eight insects')",
-        "saved: of what the own stroke needs to carry the weight, by CFD and by this model",
+        "saved: of the own stroke's power by CFD and by this model, each beaten as fast as carries exactly the weight",
     ]
-    lines += [ranking_sentence(results, called), outside_sentence(results)]
+    lines += [ranking_sentence(results, called), outside_sentences(results)]
     return "\n".join(line for line in lines if line)
 
 
@@ -74,7 +75,9 @@ def number(value: float | None, digits: int, *, percent: bool = False) -> str:
         digits: after the point.
         percent: whether a fraction is told in percent.
     """
-    return "none" if value is None else f"{100 * value if percent else value:.{digits}f}"
+    if value is None:
+        return "none"
+    return f"{round(100 * value if percent else value, digits) + 0.0:.{digits}f}"  # + 0.0, so that no zero is negative
 
 
 def ranking_table(results: Sequence[StrokeAssessment]) -> str:
@@ -105,22 +108,32 @@ def ranking_sentence(results: Sequence[StrokeAssessment], called: str = LEARNED)
     ]
     if not judged:
         return ""
-    lost = [f"{name} ({ranking.model})" for name, ranking in judged if not ranking.survives]
-    held = f"{len(judged) - len(lost)} of {len(judged)}"
-    end = f"; not for {', '.join(lost)}" if lost else ""
-    return f"{called} needs less than the own stroke in {held} cases of other models{end}"
+    lost: dict[str, list[str]] = {}
+    for name, ranking in judged:
+        if not ranking.survives:
+            lost.setdefault(ranking.model, []).append(name)
+    held = len(judged) - sum(map(len, lost.values()))
+    end = "".join(f"; not with {model}: {', '.join(names)}" for model, names in lost.items())
+    return f"{called} needs less than the own stroke in {held} of {len(judged)} cases of other models{end}"
 
 
-def outside_sentence(results: Sequence[StrokeAssessment]) -> str:
-    """What of the strokes and wings no CFD case covers, a line each with the insects it holds for."""
+def outside_sentences(results: Sequence[StrokeAssessment]) -> str:
+    """What of the strokes and wings no CFD case covers, and what lies beyond the box; with the insects it holds for."""
+    validated = _grouped({result.insect.name: result.outside for result in results})
+    box = _grouped({result.insect.name: result.beyond_box for result in results})
+    lines = ["outside of what CFD has validated:", *validated] if validated else []
+    return "\n".join([*lines, *(["outside of the problem's box, so that a gap may be negative:", *box] if box else [])])
+
+
+def _grouped(outside: Mapping[str, Sequence[Quantity]]) -> list[str]:
+    """A line for each quantity and range, those that most insects share first."""
     found: dict[tuple[str, str], dict[str, float]] = {}
-    for result in results:
-        for quantity in result.outside:
-            found.setdefault((quantity.name, quantity.range_text), {})[result.insect.name] = quantity.value
+    for insect, quantities in outside.items():
+        for quantity in quantities:
+            found.setdefault((quantity.name, quantity.range_text), {})[insect] = quantity.value
     lines = []
     for (name, where), values in sorted(found.items(), key=lambda item: -len(item[1])):
-        low, high = min(values.values()), max(values.values())
-        value = f"{low:.4g}" if f"{low:.4g}" == f"{high:.4g}" else f"{low:.4g} to {high:.4g}"
-        who = "all" if len(values) == len(results) > 1 else ", ".join(values)
-        lines.append(f"  {name} = {value}, validated at {where}: {who}")
-    return "\n".join(["outside of what CFD has validated:", *lines]) if lines else ""
+        low, high = (f"{value:.4g}" for value in (min(values.values()), max(values.values())))
+        who = "all" if len(values) == len(outside) > 1 else ", ".join(values)
+        lines.append(f"  {name} = {low if low == high else f'{low} to {high}'}, beyond {where}: {who}")
+    return lines

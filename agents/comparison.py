@@ -39,14 +39,20 @@ class Comparison:
         info = self.beat(policy)
         return np.asarray(info["optimality_gap"][info["_optimality_gap"]])
 
+    def strokes(self, policy: Predictor) -> list[tuple[Insect, Stroke]]:
+        """Every insect with the stroke that the policy chooses for it."""
+        info = self.beat(policy)
+        return [
+            (
+                self.env.flyers[number],
+                Stroke(**{name: float(info[f"stroke/{name}"][number]) for name in STROKE_PARAMETERS}),
+            )
+            for number in range(len(self.names))
+        ]
+
     def results(self, policy: Predictor) -> list[StrokeAssessment]:
         """Every insect's learned stroke, evaluated afresh through `flapenv.evaluate` and assessed."""
-        info = self.beat(policy)
-        results = []
-        for number in range(len(self.names)):
-            stroke = Stroke(**{name: float(info[f"stroke/{name}"][number]) for name in STROKE_PARAMETERS})
-            results.append(assess(self.env.flyers[number], stroke, self.env.problem))
-        return results
+        return [assess(insect, stroke, self.env.problem) for insect, stroke in self.strokes(policy)]
 
 
 def mean_gap(results: Sequence[StrokeAssessment]) -> float | None:

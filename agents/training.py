@@ -121,7 +121,8 @@ def train(
     """Train from random weights; the last policy is the result, nothing is picked by its score.
 
     Writes config.json at the start, the policy and the learning curve as it goes, and results.json, pictures and a
-    report at the end. Ctrl-C ends the training early and keeps what was learned: everything is written for the policy as it is then.
+    report at the end. Ctrl-C ends the training early and keeps what was learned: everything is written for the policy
+    as it is then.
 
     Args:
         config: what to train.

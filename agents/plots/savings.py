@@ -11,7 +11,7 @@ from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE
 
 ROW_HEIGHT, FRAME_HEIGHT = 42, 140
 """Of an insect, and of everything around the bars [px]."""
-BY_CFD, BY_MODEL, AS_PUBLISHED = (
+BY_CFD, BY_MODEL, AS_IS = (
     "of CFD's power",
     "of the model's, both carrying the weight",
     "of the model's, as published",
@@ -45,12 +45,12 @@ def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
             hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{label}</extra>",
         )
     figure.add_scatter(
-        name=AS_PUBLISHED,
+        name=AS_IS,
         y=names,
         x=[_percent(one.saving_as_published) for one in assessments],
         mode="markers",
         marker={**STYLES["learned"].marker, "color": GREEN, "symbol": "diamond"},
-        hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{AS_PUBLISHED}</extra>",
+        hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{AS_IS}</extra>",
     )
     styled(figure, FRAME_HEIGHT + ROW_HEIGHT * len(names))
     figure.update_layout(

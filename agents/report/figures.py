@@ -1,6 +1,5 @@
 """The figures of a report and what they say to those who do not see them."""
 
-import re
 from collections.abc import Sequence
 
 import plotly.graph_objects as go
@@ -15,7 +14,6 @@ from agents.report.content import ReportContent
 from flapenv.aero.checks import record
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment
-from flapenv.problem import HoverProblem
 from flapenv.trade_off import weight_front
 
 FRONT_WEIGHTS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6)
@@ -43,19 +41,17 @@ class PlacedFigure:
 
 def placed(figure: go.Figure, key: str, title: str, text: str) -> PlacedFigure:
     """A figure ready for the page."""
-    height, made = int(figure.layout.height), figure.to_json(validate=False)
-    return PlacedFigure(
-        key=re.sub(r"[^a-z0-9]+", "-", key.lower()), title=title, text=text, json=str(made), height=height
-    )
+    made = str(figure.to_json(validate=False))
+    return PlacedFigure(key=key, title=title, text=text, json=made, height=int(figure.layout.height))
 
 
 def curve_figure(content: ReportContent) -> PlacedFigure | None:
     """The learning curve, where something was trained."""
     if not content.curve:
         return None
-    figure = learning_curve(content.curve, content.task.distance)
+    figure = learning_curve(content.curve, content.distance)
     text = (
-        f"The policy's {content.task.distance}, without noise, against the wingbeats it was trained on; dotted: 1 %. "
+        f"The policy's {content.distance}, without noise, against the wingbeats it was trained on; dotted: 1 %. "
         "Watched only: the last policy is the result."
     )
     return placed(figure, "learning-curve", "Learning curve", text)
@@ -64,23 +60,23 @@ def curve_figure(content: ReportContent) -> PlacedFigure | None:
 def savings_figure(strokes: Sequence[StrokeAssessment], called: str) -> PlacedFigure:
     """How much less power is needed."""
     text = (
-        f"What the {called} stroke saves of the power of the insect's own stroke. Blue: of CFD's power, with the model's "
-        "own error as whiskers. Hatched: of the model's power, the own stroke slowed or hurried until it carries exactly "
-        "the weight. Diamonds: of the model's power of the stroke as published, whatever it carries."
+        f"What the {called} stroke saves of the power of the insect's own stroke. Blue: of CFD's power, with the "
+        "model's own error as whiskers. Hatched: of the model's power, both strokes slowed or hurried until they carry "
+        "exactly the weight. Diamonds: of the model's power, both strokes as they are, whatever they carry."
     )
     return placed(savings(strokes), "savings", "Power saved", text)
 
 
-def front_figure(strokes: Sequence[StrokeAssessment], problem: HoverProblem, called: str) -> PlacedFigure | None:
+def front_figure(strokes: Sequence[StrokeAssessment], called: str) -> PlacedFigure | None:
     """The fronts, where they can be had in a moment: not without springs, and not where nobody can hover."""
-    hovering = [one for one in strokes if one.best.feasible]
-    if not hovering or not problem.model.has_proven_bound:
+    hovering = [one for one in strokes if one.best.feasible and one.problem.model.has_proven_bound]
+    if not hovering:
         return None
-    fronts = [weight_front(one.insect, FRONT_WEIGHTS, problem) for one in hovering]
+    fronts = [weight_front(one.insect, FRONT_WEIGHTS, one.problem) for one in hovering]
     text = (
-        "Least power (grey, one line an insect) against the weight that is carried, both over the insect's optimum at its "
-        f"full weight, so that all fronts pass through (1, 1). Circles: {called}. Squares: the insects' own strokes at the "
-        "weight that they carry in this model. Below its line no stroke of the box can lie."
+        "Least power (grey, one line an insect) against the weight that is carried, both over the insect's optimum at "
+        f"its full weight, so that all fronts pass through (1, 1). Circles: {called}. Squares: the insects' own "
+        "strokes at the weight that they carry in this model. Below its line no stroke of the box lies."
     )
     return placed(front(hovering, fronts, called), "front", "Power against weight support", text)
 
@@ -91,8 +87,8 @@ def sensitivities_figure(strokes: Sequence[StrokeAssessment]) -> PlacedFigure | 
     if not optima:
         return None
     text = (
-        "What a small step from the optimum costs: median of the insects, whiskers from the least to the most. No bar: the "
-        "optimum lies inside the box, where a small step costs nothing to first order."
+        "What a small step from the optimum costs: median of the insects, whiskers from the least to the most. No bar: "
+        "the optimum lies inside the box, where a small step costs nothing to first order."
     )
     return placed(sensitivities(optima), "sensitivities", "What counts", text)
 
@@ -135,8 +131,8 @@ def insect_figures(one: StrokeAssessment, called: str, number: int) -> dict[str,
         "terms": (
             terms(insect, one.stroke, model),
             f"Term by term: {called}",
-            "Lift and power of the stroke by the blade element, term by term. Only the translational term counts in the "
-            "table above; the others show what it leaves out.",
+            "Lift and power of the stroke by the blade element, term by term. Only the translational term counts in "
+            "the table above; the others show what it leaves out.",
         ),
     }
     return {key: placed(figure, f"{key}-{number}", *told) for key, (figure, *told) in drawn.items()}

@@ -1,17 +1,18 @@
-"""The report of a training run."""
+"""Reports of training runs and of evaluations, from what lies in their folders."""
 
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from agents.curve_picture import read_curve
-from agents.read_json import read_object
 from agents.report.content import ReportContent
 from agents.report.page import write_report
 from agents.run_folder import CURVE, POLICY_CARD, REPORT, RESULT_PICTURE, versions
 from agents.tasks.task import Task
+from flapenv.read_json import read_object
 
 if TYPE_CHECKING:
+    from agents.evaluated import Evaluated
     from agents.training import TrainingConfig, TrainingResult
 
 
@@ -36,7 +37,8 @@ def report_of_run(config: "TrainingConfig", task: Task, result: "TrainingResult"
     content = ReportContent(
         title=f"{config.name}, seed {config.seed}",
         verdict=result.verdict,
-        task=task,
+        about=f"{task.environment}, judged by the {task.distance}",
+        distance=task.distance,
         picture=picture.read_bytes(),
         curve=read_curve(result.out) if (result.out / CURVE).is_file() else (),
         facts={
@@ -51,6 +53,36 @@ def report_of_run(config: "TrainingConfig", task: Task, result: "TrainingResult"
         config=config.to_dict(),
     )
     return write_report(result.out / REPORT, content)
+
+
+def report_of_evaluation(found: "Evaluated", out: Path, command: str) -> Path:
+    """Write the report of what was evaluated into the folder that holds its picture; arguments as `report_of_run`.
+
+    Args:
+        found: the verdict and what it is about; a run's policy shows the learning curve of its folder.
+        out: the folder.
+        command: what was typed.
+    """
+    about = {name: value for name, value in found.about.items() if isinstance(value, str | float) and value}
+    card, trained = found.card, found.source.parent if found.source else None
+    content = ReportContent(
+        title=found.title,
+        about=f"judged by the {found.about['distance']}",
+        verdict=found.verdict,
+        distance=str(found.about["distance"]),
+        called=found.called,
+        told=found.told,
+        picture=(out / RESULT_PICTURE).read_bytes(),
+        curve=read_curve(trained) if trained and (trained / CURVE).is_file() else (),
+        facts={
+            "command": command,
+            **{name: str(value) for name, value in about.items() if name != "distance"},
+            **({"trained by": card.command} if card and card.command else {}),
+            **machine_facts(),
+        },
+        config=card.to_dict() if card else {},
+    )
+    return write_report(out / REPORT, content)
 
 
 def machine_facts() -> dict[str, str]:

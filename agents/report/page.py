@@ -11,6 +11,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
+from agents.assessment_table import assessment_table
 from agents.plots import style
 from agents.plots.beat import SCRIPT as BEAT_SCRIPT
 from agents.report.content import ReportContent
@@ -25,6 +26,7 @@ from agents.report.figures import (
 )
 from agents.report.tables import (
     Table,
+    beyond_table,
     models_table,
     outside_table,
     results_table,
@@ -98,7 +100,7 @@ def report_page(content: ReportContent) -> str:
         plot_config=json.dumps(style.config()),
         summary=summary(content),
         picture=None if content.picture is None else base64.b64encode(content.picture).decode("ascii"),
-        config=json.dumps(content.config, indent=2, ensure_ascii=False),
+        config=json.dumps(content.config, indent=2, ensure_ascii=False) if content.config else "",
         curve=curve_figure(content),
         **_of_strokes(content),
     )
@@ -113,11 +115,12 @@ def _of_strokes(content: ReportContent) -> dict[str, Any]:
         "results": results_table(strokes, called),
         "savings": savings_figure(strokes, called),
         "insects": [_insect_part(one, called, number) for number, one in enumerate(strokes)],
-        "front": front_figure(strokes, strokes[0].problem, called),
+        "front": front_figure(strokes, called),
         "sensitivities": sensitivities_figure(strokes),
         "steps": steps_table(strokes),
         "models": models_table(strokes),
-        "outside": outside_table(strokes),
+        "outside": [table for table in (outside_table(strokes), beyond_table(strokes)) if table.rows],
+        "repeated": content.verdict.text == assessment_table(strokes, called),
     }
 
 
@@ -141,7 +144,7 @@ def script_data(text: str) -> Markup:
 
 
 def security_policy(scripts: Sequence[str]) -> str:
-    """What the browser lets the page do: run these scripts and no other, show what the file holds, and reach nothing."""
+    """What the browser lets the page do: run these scripts and no other, show what it holds, and reach nothing."""
     digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii") for script in scripts)
     allowed = " ".join(f"'sha256-{digest}'" for digest in digests)
     return (

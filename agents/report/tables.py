@@ -59,7 +59,8 @@ def results_table(strokes: Sequence[StrokeAssessment], called: str) -> Table:
         rows=tuple(rows),
         note=(
             "±: the model's own error against CFD at the insect's stroke; without CFD, the root mean square of the "
-            "eight insects'. Saved: of what the own stroke needs to carry the weight, by CFD and by this model."
+            "eight insects'. Saved: of the own stroke's power by CFD and by this model, each stroke beaten as fast as "
+            "carries exactly the weight."
         ),
     )
 
@@ -87,21 +88,29 @@ def models_table(strokes: Sequence[StrokeAssessment]) -> Table:
 
 
 def outside_table(strokes: Sequence[StrokeAssessment]) -> Table:
-    """What lies outside of what CFD has validated, a row a quantity with the insects it holds for."""
-    found: dict[tuple[str, str], list[tuple[str, Quantity]]] = {}
-    for one in strokes:
-        for quantity in one.outside:
-            found.setdefault((quantity.name, quantity.range_text), []).append((one.insect.name, quantity))
+    """What no CFD case covers."""
+    return _quantities_table("What no CFD case covers", "covered", {one.insect.name: one.outside for one in strokes})
+
+
+def beyond_table(strokes: Sequence[StrokeAssessment]) -> Table:
+    """What lies beyond the problem's box, so that a gap may be negative."""
+    caption = "What lies beyond the problem's box, where the optimum was not sought"
+    return _quantities_table(caption, "box", {one.insect.name: one.beyond_box for one in strokes})
+
+
+def _quantities_table(caption: str, allowed: str, outside: Mapping[str, Sequence[Quantity]]) -> Table:
+    """A row for each quantity and range with the insects it holds for, those that most share first."""
+    found: dict[tuple[str, str], dict[str, float]] = {}
+    for insect, quantities in outside.items():
+        for quantity in quantities:
+            found.setdefault((quantity.name, quantity.range_text), {})[insect] = quantity.value
     rows = []
-    for (name, where), held in sorted(found.items(), key=lambda item: -len(item[1])):
-        who = "all" if len(held) == len(strokes) > 1 else ", ".join(insect for insect, _ in held)
-        low, high = (f"{end(quantity.value for _, quantity in held):.4g}" for end in (min, max))
+    for (name, where), values in sorted(found.items(), key=lambda item: -len(item[1])):
+        low, high = (f"{end(values.values()):.4g}" for end in (min, max))
+        who = "all" if len(values) == len(outside) > 1 else ", ".join(values)
         rows.append((name, low if low == high else f"{low} to {high}", where, who))
-    return Table(
-        caption="What no CFD case covers",
-        columns=(("quantity", ""), ("here", ""), ("validated at", ""), ("of", "")),
-        rows=tuple(rows),
-    )
+    columns = (("quantity", ""), ("here", ""), (allowed, ""), ("of", ""))
+    return Table(caption=caption, columns=columns, rows=tuple(rows))
 
 
 def strokes_table(strokes: Mapping[str, Stroke]) -> Table:
@@ -141,7 +150,8 @@ def steps_table(strokes: Sequence[StrokeAssessment]) -> Table:
         columns=(("insect", ""), *((step.text, "%") for step in STEPS.values())),
         rows=tuple(rows),
         note=(
-            "↑ ↓: the optimum lies at the upper or lower bound of the box, and the step leads back into it. 0.00 without "
-            "an arrow: the optimum lies inside, where a small step costs nothing to first order. Λ: what carrying more costs."
+            "↑ ↓: the optimum lies at the upper or lower bound of the box, and the step leads back into it. 0.00 "
+            "without an arrow: the optimum lies inside, where a small step costs nothing to first order. Λ: what "
+            "carrying more costs."
         ),
     )

@@ -7,12 +7,12 @@ import numpy as np
 
 from agents.comparison import Comparison
 from agents.predictor import Predictor
-from agents.tasks.described import described
 from agents.tasks.stroke_verdict import verdict_of
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.insect_choice import listed_insects
+from flapenv.insects import described
 from flapenv.problem import as_problem
 
 if TYPE_CHECKING:

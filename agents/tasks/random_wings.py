@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Any
 from agents.assessment_table import assessment_table
 from agents.comparison import Comparison
 from agents.predictor import Predictor
-from agents.tasks.described import described
 from agents.tasks.task import Verdict
 from agents.tasks.wing_flights import WingFlights, WingPool
 from flapenv.aero.checks import record, require_count
 from flapenv.envs import HoverVectorEnv
-from flapenv.insects import INSECTS, as_insect, load_insect
+from flapenv.insects import INSECTS, as_insect, described, load_insect
 from flapenv.problem import as_problem
 from flapenv.tables import text_table
 

@@ -11,7 +11,7 @@ from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment.hovering import hovering
 from flapenv.assessment.rankings import Ranking, rankings
-from flapenv.assessment.validity import Quantity, outside_validated
+from flapenv.assessment.validity import Quantity, outside_box, outside_validated
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.model import HoverModel
 from flapenv.optimum import Optimum, optimum
@@ -37,12 +37,14 @@ class StrokeAssessment:
         best: the optimum of the box with its proven bound.
         own_weight_support: Λ of the model at the insect's own stroke [-].
         own_specific_power: P* of the model at the insect's own stroke [W/kg].
-        own_hovering_power: P* of the insect's own stroke at the frequency with which it carries the weight in this
-            model [W/kg]; None where it lifts nothing.
+        hovering_power: P* of the stroke at the frequency with which it carries exactly the weight in this model
+            [W/kg]; None where it lifts nothing.
+        own_hovering_power: the same of the insect's own stroke [W/kg].
         model_error: P*_model/P*_CFD - 1 at the insect's own stroke [-]; None where there is no CFD.
         uncertainty: of `specific_power`, relative [-]: |model_error|, or the root mean square of the eight insects'
             where there is no CFD.
         outside: what of stroke and wing the eight CFD cases do not cover.
+        beyond_box: what of the stroke lies beyond the problem's box, where the optimum was not sought.
         rankings: the stroke beside the insect's own under other models.
     """
 
@@ -55,10 +57,12 @@ class StrokeAssessment:
     best: Optimum
     own_weight_support: float
     own_specific_power: float
+    hovering_power: float | None
     own_hovering_power: float | None
     model_error: float | None
     uncertainty: float
     outside: tuple[Quantity, ...]
+    beyond_box: tuple[Quantity, ...]
     rankings: tuple[Ranking, ...]
 
     @property
@@ -73,23 +77,29 @@ class StrokeAssessment:
 
     @property
     def saving(self) -> float | None:
-        """1 - P*/P*_own in this model, the own stroke carrying the weight [-]."""
-        return None if self.own_hovering_power is None else 1 - self.specific_power / self.own_hovering_power
+        """1 - P*/P*_own in this model, both strokes carrying exactly the weight [-]; None where one cannot."""
+        return _saved(self.hovering_power, self.own_hovering_power)
 
     @property
     def saving_as_published(self) -> float:
-        """1 - P*/P*_own in this model, the own stroke as it is published, whatever it carries [-]."""
+        """1 - P*/P*_own in this model, both as they are, whatever they carry [-]."""
         return 1 - self.specific_power / self.own_specific_power
 
     @property
     def saving_to_cfd(self) -> float | None:
-        """1 - P*/P*_CFD of the insect's own stroke, which carries the weight there [-]."""
-        return None if self.cfd_power is None else 1 - self.specific_power / self.cfd_power
+        """1 - P*/P*_CFD, this stroke carrying the weight in this model and the insect's own in CFD [-].
+
+        None where only positive power is paid, too: CFD's power is what springs return, and less.
+        """
+        if self.problem.model.accounting == "positive":
+            return None
+        return _saved(self.hovering_power, self.cfd_power)
 
     @property
     def saving_uncertainty(self) -> float | None:
         """Of `saving_to_cfd` [-]."""
-        return None if self.cfd_power is None else self.power_uncertainty / self.cfd_power
+        saving = self.saving_to_cfd
+        return None if saving is None else self.uncertainty * (1 - saving)
 
     @property
     def flags(self) -> tuple[str, ...]:
@@ -112,12 +122,14 @@ class StrokeAssessment:
             "model_error_percent": _percent(self.model_error),
             "own_stroke_weight_support": self.own_weight_support,
             "own_stroke_specific_power": self.own_specific_power,
+            "hovering_power": self.hovering_power,
             "own_stroke_hovering_power": self.own_hovering_power,
             "saving_percent": _percent(self.saving),
             "saving_as_published_percent": _percent(self.saving_as_published),
             "saving_to_cfd_percent": _percent(self.saving_to_cfd),
             "saving_to_cfd_uncertainty_percent": _percent(self.saving_uncertainty),
             "outside_validated_range": list(self.flags),
+            "beyond_box": [quantity.text for quantity in self.beyond_box],
             "other_models": [ranking.to_dict() for ranking in self.rankings],
             "stroke": {name: float(getattr(self.stroke, name)) for name in STROKE_PARAMETERS},
         }
@@ -143,7 +155,7 @@ def assess(
     stroke, model = insect.stroke if stroke is None else stroke, problem.model
     judged, own = evaluate(insect, stroke, **vars(model)), evaluate(insect, **vars(model))
     best = optimum(insect, problem)
-    carried = hovering(insect, insect.stroke, model)
+    carried, own_carried = (hovering(insect, one, model) for one in (stroke, insect.stroke))
     error = model_error(insect, model)
     return StrokeAssessment(
         insect=insect,
@@ -155,10 +167,12 @@ def assess(
         best=best,
         own_weight_support=own.weight_support,
         own_specific_power=own.specific_power,
-        own_hovering_power=carried.specific_power if carried else None,
+        hovering_power=carried.specific_power if carried else None,
+        own_hovering_power=own_carried.specific_power if own_carried else None,
         model_error=error,
         uncertainty=typical_error(model) if error is None else abs(error),
         outside=outside_validated(insect, stroke, air_density=model.air_density),
+        beyond_box=outside_box(insect, stroke, problem.box),
         rankings=rankings(insect, stroke, model),
     )
 
@@ -181,6 +195,11 @@ def typical_error(model: HoverModel) -> float:
         insects = [insect for insect in insects if insect.force_constants is not None]
     errors = [error for insect in insects if (error := model_error(insect, model)) is not None]
     return math.sqrt(sum(error**2 for error in errors) / len(errors))
+
+
+def _saved(power: float | None, own: float | None) -> float | None:
+    """What of `own` is saved [-]; None where one is not known."""
+    return None if power is None or own is None else 1 - power / own
 
 
 def _percent(value: float | None) -> float | None:

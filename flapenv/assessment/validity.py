@@ -1,30 +1,33 @@
-"""Where the model has been held against CFD, and what of a stroke and its wing lies outside of that."""
+"""Where the model has been held against CFD, and what of a stroke and its wing lies outside of that or of a box."""
 
 import functools
 import math
 
 from flapenv.aero.checks import record
-from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeParameter
 from flapenv.aero.stroke import Stroke
 from flapenv.insects import INSECTS, Insect, load_insect
+from flapenv.problem import StrokeBox
 
 AIR_VISCOSITY = 1.789e-5
 """μ of air at 15 °C [Pa s] (International Standard Atmosphere); it hardly changes with density."""
 SMALLEST_ANGLE, LARGEST_ANGLE = math.radians(25), math.radians(45)
-"""Angles of attack of insects' wings at mid-stroke, where the model's accuracy is good [rad] (Part II, section 2.3.2)."""
+"""Angles of attack that wings usually have, where the model's accuracy is good [rad] (Part II, section 2.3.2)."""
+ROUNDING = 1e-4
+"""Of a bound's larger end, by which a stroke found in single precision may be beyond it."""
 SLACK = 0.01
 """Of a range's larger end, by which a value must be outside before it is worth a word."""
 
 
 @record
 class Quantity:
-    """A quantity of a beating wing with the range in which the model was held against CFD.
+    """A quantity of a beating wing with a range it is held against.
 
     Attributes:
         name: what it is, in words.
         value: of the stroke that is judged [unit].
-        low: smallest of the eight CFD cases [unit].
-        high: largest of them [unit].
+        low: lower end of the range [unit].
+        high: upper end [unit].
         unit: as it is printed.
     """
 
@@ -34,11 +37,10 @@ class Quantity:
     high: float
     unit: str = ""
 
-    @property
-    def is_outside(self) -> bool:
-        """Whether the value is below or above the range by more than the slack."""
-        slack = SLACK * max(abs(self.low), abs(self.high))
-        return not self.low - slack <= self.value <= self.high + slack
+    def is_outside(self, slack: float) -> bool:
+        """Whether the value is beyond the range by more than `slack` times its larger end."""
+        beyond = slack * max(abs(self.low), abs(self.high))
+        return not self.low - beyond <= self.value <= self.high + beyond
 
     @property
     def range_text(self) -> str:
@@ -48,8 +50,8 @@ class Quantity:
 
     @property
     def text(self) -> str:
-        """The quantity beside its range, in one sentence."""
-        return f"{self.name} = {self.value:.4g}{self._unit}, validated at {self.range_text}"
+        """The quantity beside its range, "φmax = 90°, beyond 45 to 88.5°"."""
+        return f"{self.name} = {self.value:.4g}{self._unit}, beyond {self.range_text}"
 
     @property
     def _unit(self) -> str:
@@ -95,7 +97,23 @@ def outside_validated(insect: Insect, stroke: Stroke, *, air_density: float = 1.
         for (name, unit), value in found.items()
         for low, high in (ranges[name],)
     ]
-    return tuple(quantity for quantity in judged if quantity.is_outside)
+    return tuple(quantity for quantity in judged if quantity.is_outside(SLACK))
+
+
+def outside_box(insect: Insect, stroke: Stroke, box: StrokeBox) -> tuple[Quantity, ...]:
+    """Every parameter of the stroke that a search in the box would not have found.
+
+    Args:
+        insect: one insect, whose own stroke the box may be relative to.
+        stroke: one stroke, scalar fields.
+        box: the box.
+    """
+    judged = []
+    for name, parameter in STROKE_PARAMETERS.items():
+        low, high = (_shown(parameter, bound) for bound in box.bounds(name, insect.reference))
+        value, unit = _shown(parameter, getattr(stroke, name)), _shown_unit(parameter)
+        judged.append(Quantity(name=parameter.symbol, value=value, low=low, high=high, unit=unit))
+    return tuple(quantity for quantity in judged if quantity.is_outside(ROUNDING))
 
 
 def _quantities(insect: Insect, stroke: Stroke, air_density: float) -> dict[tuple[str, str], float]:
@@ -107,9 +125,18 @@ def _quantities(insect: Insect, stroke: Stroke, air_density: float) -> dict[tupl
     }
     for name, parameter in STROKE_PARAMETERS.items():
         if name != "pitch_amplitude":  # which α at mid-stroke says
-            value, angle = float(getattr(stroke, name)), parameter.unit == "rad"
-            found[parameter.symbol, "°" if angle else parameter.unit] = math.degrees(value) if angle else value
+            found[parameter.symbol, _shown_unit(parameter)] = _shown(parameter, getattr(stroke, name))
     return found
+
+
+def _shown(parameter: StrokeParameter, value: float) -> float:
+    """A value as it is printed, angles in degrees."""
+    return math.degrees(value) if parameter.unit == "rad" else float(value)
+
+
+def _shown_unit(parameter: StrokeParameter) -> str:
+    """Its unit."""
+    return "°" if parameter.unit == "rad" else parameter.unit
 
 
 @functools.cache

@@ -29,7 +29,8 @@ def test_the_own_stroke_is_its_line_of_table_3(insect: Insect) -> None:
     result = assess(insect)
     (row,) = [row for row in table3() if row.insect == insect.name]
     assert (result.weight_support, result.specific_power) == (row.weight_support, row.specific_power)
-    assert result.saving_as_published == 0
+    assert result.saving_as_published == result.saving == 0
+    assert result.saving_to_cfd == pytest.approx(1 - result.own_hovering_power / insect.cfd.specific_power)
     assert result.specific_power == pytest.approx(insect.published.specific_power, abs=1)
     assert result.model_error == pytest.approx(result.specific_power / insect.cfd.specific_power - 1)
 
@@ -39,7 +40,7 @@ def test_the_uncertainty_is_the_models_error_against_cfd_which_table_3_gives(ins
     printed = insect.published.specific_power / insect.cfd.specific_power - 1
     assert result.model_error == pytest.approx(printed, abs=0.04)  # Table 3 is rounded to whole W/kg
     assert result.power_uncertainty == pytest.approx(abs(result.model_error) * result.specific_power)
-    assert result.saving_uncertainty == pytest.approx(result.power_uncertainty / insect.cfd.specific_power)
+    assert result.saving_uncertainty == pytest.approx(result.power_uncertainty / insect.cfd.specific_power, rel=1e-6)
 
 
 def test_the_optimum_saves_in_every_insect_beyond_the_uncertainty(insect: Insect) -> None:
@@ -102,6 +103,7 @@ def test_a_wing_without_cfd_gets_the_rms_error_of_the_eight_insects() -> None:
 
 def test_without_springs_the_error_is_still_that_of_the_power_that_cfd_has(hawkmoth: Insect) -> None:
     assert model_error(hawkmoth, HoverModel(accounting="positive")) == model_error(hawkmoth, HoverModel())
+    assert assess(hawkmoth, problem="inertial").saving_to_cfd is None
 
 
 def test_missing_weight_and_strokes_beyond_the_box_show_in_the_gap(hawkmoth: Insect) -> None:

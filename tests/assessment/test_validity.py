@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from flapenv import INSECTS, Insect, Wing, load_insect, optimum
+from flapenv import INSECTS, PROBLEMS, Insect, StrokeBox, Wing, load_insect, optimum
 from flapenv.assessment import outside_validated, reynolds_number
-from flapenv.assessment.validity import angle_at_mid_stroke
+from flapenv.assessment.validity import angle_at_mid_stroke, outside_box
 
 
 def test_reynolds_numbers_of_the_cases_run_from_the_fruit_fly_to_the_hawkmoth() -> None:
@@ -43,7 +43,7 @@ def test_the_optimum_is_outside_in_its_waveform_and_amplitude(insect: Insect) ->
     outside = {quantity.name: quantity for quantity in outside_validated(insect, optimum(insect).stroke)}
     assert {"φmax", "Cφ", "Cθ"} <= set(outside)
     assert "α at mid-stroke" not in outside
-    assert outside["φmax"].text == "φmax = 90°, validated at 45 to 88.5°"
+    assert outside["φmax"].text == "φmax = 90°, beyond 45 to 88.5°"
 
 
 @pytest.mark.parametrize(
@@ -77,3 +77,18 @@ def test_the_angle_at_mid_stroke_knows_a_delayed_rotation(hawkmoth: Insect) -> N
     assert angle_at_mid_stroke(hawkmoth.stroke) == pytest.approx(math.pi / 2 - hawkmoth.stroke.pitch_amplitude)
     late = dataclasses.replace(hawkmoth.stroke, pitch_phase=math.radians(30), pitch_shape=1.0)
     assert angle_at_mid_stroke(late) > angle_at_mid_stroke(hawkmoth.stroke)
+
+
+def test_an_optimum_is_never_beyond_its_own_box_and_another_boxs_may_be(insect: Insect) -> None:
+    for name in ("free-frequency", "fixed-frequency", "profile-drag"):
+        assert not outside_box(insect, optimum(insect, name).stroke, PROBLEMS[name].box)
+    own = outside_box(insect, insect.stroke, StrokeBox())
+    assert {quantity.name for quantity in own} <= {"Cφ", "θmax"}  # a sinusoid; the fruit fly's 46°
+    assert "Cφ" in {quantity.name for quantity in own}
+
+
+def test_limits_of_ones_own_are_told_in_degrees() -> None:
+    limits = StrokeBox(frequency=(30, 40), flap_amplitude=(math.radians(40), math.radians(55)))
+    found = {one.name: one.text for one in outside_box(load_insect("hawkmoth"), load_insect("hawkmoth").stroke, limits)}
+    assert found["f"] == "f = 26.3 Hz, beyond 30 to 40 Hz"
+    assert found["φmax"] == "φmax = 60.5°, beyond 40 to 55°"
