@@ -46,7 +46,7 @@ def beat(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel, frame
     unit = LONGEST / max(longest, 1.0)  # mean chords for one weight
     figure, inside = _rows(beats)
     moving: list[int] = []
-    parts: list[list[dict[str, Any]]] = []
+    parts: list[list[list[dict[str, Any]]]] = []
     for row, (label, style) in enumerate(line_styles(beats).items(), start=1):
         one = beats[label]
         _still(figure, row, one, unit)
