@@ -59,16 +59,22 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff], c
             f"<extra>{plain(label)}</extra>",
         )
     styled(figure, HEIGHT)
+    highest = max(power / one.best.specific_power for one in assessments for power in _powers(one))
     carried = [weight for weight, _ in (*own, *learned)]
     figure.update_layout(
         xaxis={
             "title": {"text": "weight support Λ"},
             "range": [min(0.75, *carried) - 0.05, max(1.5, *carried) + 0.05],
         },
-        yaxis={"title": {"text": "power over the least for the full weight"}, "rangemode": "tozero"},
+        yaxis={"title": {"text": "power over the least for the full weight"}, "range": [0, 1.1 * highest]},
     )
     _mark_full_weight(figure)
     return figure
+
+
+def _powers(one: StrokeAssessment) -> tuple[float, float, float]:
+    """Every power of an insect that the figure must have room for [W/kg]."""
+    return one.best.specific_power, one.specific_power, one.own_specific_power
 
 
 def _sides(weights: Sequence[float]) -> list[str]:
@@ -80,13 +86,3 @@ def _sides(weights: Sequence[float]) -> list[str]:
 def _mark_full_weight(figure: go.Figure) -> None:
     """A line where exactly the weight is carried."""
     figure.add_vline(x=1.0, line={"color": GREY, "width": 1, "dash": "dot"})
-
-
-def above_front(one: StrokeAssessment, curve: TradeOff) -> float:
-    """How far a stroke lies above the front at its own weight support [W/kg]; negative would be below it.
-
-    The front is interpolated along power laws, which it follows exactly while the frequency is free.
-    """
-    known = curve.feasible & (curve.values > 0)
-    logs = np.interp(np.log(one.weight_support), np.log(curve.values[known]), np.log(curve.specific_power[known]))
-    return float(one.specific_power - np.exp(logs))

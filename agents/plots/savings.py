@@ -14,7 +14,7 @@ ROW_HEIGHT, FRAME_HEIGHT = 42, 140
 BY_CFD, BY_MODEL, AS_IS = (
     "of CFD's power",
     "of the model's, both carrying the weight",
-    "of the model's, as published",
+    "of the model's, both as they are",
 )
 """Names of the three comparisons with the insect's own stroke."""
 

@@ -87,8 +87,9 @@ def write_report(path: Path, content: ReportContent) -> Path:
 
 def report_page(content: ReportContent) -> str:
     """The report as HTML."""
-    environment = Environment(loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined)
-    environment.policies["json.dumps_kwargs"] = {"allow_nan": False}
+    environment = Environment(
+        loader=FileSystemLoader(HERE), autoescape=True, undefined=StrictUndefined, keep_trailing_newline=True
+    )
     environment.filters["script_data"] = script_data
     scripts = [get_plotlyjs(), _script(BEAT_SCRIPT), _script(HERE / "report.js")]
     template = environment.get_template(TEMPLATE)
@@ -111,14 +112,15 @@ def _of_strokes(content: ReportContent) -> dict[str, Any]:
     strokes, called = content.verdict.assessments, content.called
     if not strokes:
         return {"results": None, "insects": (), "savings": None}
+    others = [one for one in strokes if one.stroke != one.insect.stroke]  # an own stroke saves nothing of itself
     return {
         "results": results_table(strokes, called),
-        "savings": savings_figure(strokes, called),
+        "savings": savings_figure(others, called) if others else None,
         "insects": [_insect_part(one, called, number) for number, one in enumerate(strokes)],
         "front": front_figure(strokes, called),
         "sensitivities": sensitivities_figure(strokes),
         "steps": steps_table(strokes),
-        "models": models_table(strokes),
+        "models": models_table(others) if any(one.rankings for one in others) else None,
         "outside": [table for table in (outside_table(strokes), beyond_table(strokes)) if table.rows],
         "repeated": content.verdict.text == assessment_table(strokes, called),
     }

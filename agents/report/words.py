@@ -27,17 +27,15 @@ def _powers(strokes: Sequence[StrokeAssessment], called: str) -> list[str]:
     weight = span([one.weight_support for one in strokes], 4)
     error = span([100 * one.uncertainty for one in strokes], 0)
     who = strokes[0].insect.name if len(strokes) == 1 else f"{len(strokes)} insects"
+    own = all(one.stroke == one.insect.stroke for one in strokes)
+    end = "" if own else ", is taken as the uncertainty of these powers: nobody has run CFD on these strokes"
     told = [
         f"The {called} strokes of {who} carry {weight} of the weight with {power} W/kg. The model's own error against "
-        f"CFD at the insects' own strokes, {error} %, is taken as the uncertainty of these powers: nobody has run CFD "
-        "on these strokes."
+        f"CFD at the insects' own strokes{f' is {error} %' if own else f', {error} %'}{end}."
     ]
     light = [one.insect.name for one in strokes if one.best.feasible and one.weight_support < CARRIED]
     if light:
-        told.append(
-            f"The full weight is not carried by {', '.join(light)}; savings are told of each stroke beaten as fast as "
-            "carries it."
-        )
+        told.append(f"The full weight is not carried by {', '.join(light)}.")
     return told
 
 
@@ -52,17 +50,18 @@ def _savings(strokes: Sequence[StrokeAssessment]) -> list[str]:
     ]
     if known:
         doubted = [name for name, saving, unsure in known if saving <= unsure]
-        end = f"for all but {', '.join(doubted)} more than that uncertainty" if doubted else "each beyond doubt of that"
+        which = f"for all but {', '.join(doubted)}" if doubted else "each"
         told.append(
             f"That saves {span([100 * saving for _, saving, _ in known], 0)} % of the power that CFD found for the own "
-            f"strokes, ± {span([100 * unsure for *_, unsure in known], 0)} points: {end}."
+            f"strokes, ± {span([100 * unsure for *_, unsure in known], 0)} points: {which} more than that "
+            "uncertainty."
         )
     equal = [100 * one.saving for one in others if one.saving is not None]
     if equal:
         published = span([100 * one.saving_as_published for one in others], 0)
         told.append(
-            f"Model against model it saves {span(equal, 0)} % where both strokes carry exactly the weight, and "
-            f"{published} % of the own strokes as published, which carry "
+            f"Model against model it saves {span(equal, 0)} % where both strokes beat as fast as carries exactly the "
+            f"weight, and {published} % of the own strokes as published, which carry "
             f"{span([one.own_weight_support for one in others], 2)} of the weight in this model."
         )
     return told
@@ -110,7 +109,7 @@ def _outside(strokes: Sequence[StrokeAssessment]) -> list[str]:
     names = list(dict.fromkeys(quantity.name for one in strokes for quantity in one.outside))
     if not names:
         return []
-    return [f"Read it with care: {', '.join(names)} lie outside of what the eight CFD cases cover, see the list below."]
+    return [f"Read it with care: {', '.join(names)}: outside of what the eight CFD cases cover, see the list below."]
 
 
 def span(values: Sequence[float], digits: int) -> str:
