@@ -16,7 +16,7 @@ from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment
 from flapenv.trade_off import weight_front
 
-FRONT_WEIGHTS = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6)
+FRONT_WEIGHTS = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6)
 """Weight supports at which fronts are found, with the full weight among them."""
 
 
@@ -60,8 +60,8 @@ def curve_figure(content: ReportContent) -> PlacedFigure | None:
 def savings_figure(strokes: Sequence[StrokeAssessment], called: str) -> PlacedFigure:
     """How much less power is needed."""
     text = (
-        f"What the {called} stroke saves of the power of the insect's own stroke. Blue: of CFD's power, with the "
-        "model's own error as whiskers. Hatched: of the model's power, both strokes slowed or hurried until they carry "
+        f"What the {called} stroke saves of the power of the insect's own stroke. Plain bars: of CFD's power, with the "
+        "model's own error as whiskers. Hatched bars: of the model's power, both strokes slowed or hurried until they carry "
         "exactly the weight. Diamonds: of the model's power, both strokes as they are, whatever they carry."
     )
     return placed(savings(strokes), "savings", "Power saved", text)
