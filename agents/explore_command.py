@@ -16,6 +16,7 @@ from flapenv.aero.checks import require_count, require_name
 
 if TYPE_CHECKING:
     from flask import Flask
+    from werkzeug.serving import BaseWSGIServer
 
 DEFAULT_PORT, HIGHEST_PORT = 8050, 65535
 LOOPBACK = "127.0.0.1"
@@ -119,11 +120,15 @@ def served(insect: str | None, wing: Path | None) -> "Flask":
 
 
 def serve(server: "Flask", listening: socket.socket) -> None:
-    """Answer requests until Ctrl-C, several at a time."""
-    from werkzeug.serving import make_server
-
+    """Answer requests until Ctrl-C."""
     logging.getLogger("werkzeug").setLevel(logging.ERROR)  # not a line for every request
     warnings.filterwarnings("ignore", category=UserWarning)  # the page says what is out of range
-    _, port = listening.getsockname()
     with contextlib.suppress(KeyboardInterrupt):
-        make_server(LOOPBACK, port, server, threaded=True, fd=listening.fileno()).serve_forever()
+        answering(server, listening).serve_forever()
+
+
+def answering(server: "Flask", listening: socket.socket) -> "BaseWSGIServer":
+    """What answers several requests at a time on a socket."""
+    from werkzeug.serving import make_server
+
+    return make_server(LOOPBACK, listening.getsockname()[1], server, threaded=True, fd=listening.fileno())

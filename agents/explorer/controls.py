@@ -7,7 +7,7 @@ from flapenv.aero.checks import record, require_name, require_scalar
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.files.plausible import CENTRES, require_plausible
-from flapenv.insects import Insect
+from flapenv.insects import INSECTS, Insect
 
 OWN_WING = "your own wing"
 """Entry of the list of insects under which one types one's own."""
@@ -166,4 +166,6 @@ def _read_name(name: object) -> str:
     """What a wing is called: one line of text."""
     if not isinstance(name, str) or not name.strip() or len(name) > LONGEST_NAME or not name.isprintable():
         raise ValueError(f"name of the wing is not allowed; allowed: 1 to {LONGEST_NAME} printable characters")
+    if name.strip() in INSECTS:
+        raise ValueError(f"name of the wing = {name.strip()!r} is taken by an insect; allowed: another name")
     return name.strip()

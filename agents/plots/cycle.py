@@ -73,7 +73,7 @@ def terms(insect: Insect, stroke: Stroke, model: HoverModel) -> go.Figure:
     """Lift and power of one stroke term by term; inertia where the wing's mass is known; arguments as `waveforms`."""
     known = [name for name in TERMS if name != "inertia" or insect.wing.mass is not None]
     if stroke.flap_shape == 1:  # whose accelerations are infinite at the corners
-        known = ["translational", "rotational"]
+        known = ["translational"]
     beat = simulate(insect, stroke, model=model, terms=known, strips=STRIPS, steps=STEPS, spacing="graded")
     air = [name for name in known if name != "inertia"]
     lift = {name: beat.terms[name].force[:, 2] / (insect.mass * model.gravity) for name in air}
