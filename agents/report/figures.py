@@ -61,8 +61,8 @@ def savings_figure(strokes: Sequence[StrokeAssessment], called: str) -> PlacedFi
     """How much less power is needed."""
     text = (
         f"What the {called} stroke saves of the power of the insect's own stroke. Plain bars: of CFD's power, with the "
-        "model's own error as whiskers. Hatched bars: of the model's power, both strokes slowed or hurried until they carry "
-        "exactly the weight. Diamonds: of the model's power, both strokes as they are, whatever they carry."
+        "model's own error as whiskers. Hatched bars: of the model's power, both strokes slowed or hurried until they "
+        "carry exactly the weight. Diamonds: of the model's power, both strokes as they are, whatever they carry."
     )
     return placed(savings(strokes), "savings", "Power saved", text)
 
