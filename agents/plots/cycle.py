@@ -53,6 +53,7 @@ def waveforms(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel) 
         for row, angle in enumerate((beat.kinematics.flap, beat.kinematics.pitch, beat.angle_of_attack), start=1):
             _draw(figure, row, np.degrees(angle), label, style, named=label if row == 1 else None)
     figure.update_yaxes(dtick=45)
+    figure.update_yaxes(dtick=30, row=3, col=1)
     return figure
 
 
