@@ -2,7 +2,7 @@
 // gives the controls their names.
 "use strict";
 (() => {
-  const QUIET = 120, LONGEST = 600; // milliseconds without a move, and at most between two drawings
+  const QUIET = 60, LONGEST = 300; // milliseconds without a move, and at most between two drawings
   let timer = null, since = null;
   function nameControls() { // for those who hear the page: Dash's sliders and its list know no labels
     const rows = [...document.querySelectorAll(".slider")];

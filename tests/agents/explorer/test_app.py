@@ -14,9 +14,10 @@ from dash import Dash
 
 import flapenv
 from agents.explorer import cases
+from agents.explorer.app import make_app
 from agents.explorer.controls import OWN_WING
 from flapenv.aero.parameters import STROKE_PARAMETERS
-from flapenv.files import read_strokes
+from flapenv.files import WingFile, read_strokes
 from flapenv.optimum import optimum
 
 
@@ -190,6 +191,16 @@ def test_a_name_is_text_wherever_it_is_shown(page: Any) -> None:
     assert "<script>alert(1)</script>: 100 mg" in words(answer["note"]["children"])  # a child, which React escapes
     shown = page.ask("download.data", changed="export.n_clicks", frequency=100.0)["download"]["data"]
     assert shown["filename"] == "script-alert-1-script-stroke.json"
+
+
+def test_a_name_of_a_file_is_no_part_of_the_pages_html(base: str) -> None:
+    hawkmoth, name = flapenv.load_insect("hawkmoth"), "</script><script>alert(1)</script>"
+    insect = flapenv.Insect(name=name, mass=hawkmoth.mass, wing=hawkmoth.wing, stroke=hawkmoth.stroke)
+    client = make_app(WingFile(insect=insect)).server.test_client()
+    assert "alert" not in client.get("/", base_url=base).text
+    layout = client.get("/_dash-layout", base_url=base)
+    assert layout.mimetype == "application/json"
+    assert name in json.dumps(layout.get_json())
 
 
 @pytest.mark.parametrize("insect", ["hawkmoth", OWN_WING])
