@@ -37,7 +37,7 @@ def test_quartiles_and_wingbeats_to_solve_are_read_off_the_traces() -> None:
 def test_the_command_compares_a_policy_with_optimisers_and_keeps_everything(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False)
+    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False, report=False)
     arguments = ["compare", "--insects", "hawkmoth", "--seeds", "2", "--wingbeats", "300", "--quiet"]
     out = tmp_path / "out"
     assert command.main([*arguments, "--policy", str(tmp_path / "run"), "--out", str(out)]) == 0
@@ -94,7 +94,7 @@ def test_bad_input_ends_with_one_line_and_leaves_no_folder(
 
 
 def test_a_policy_of_another_problem_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False)
+    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False, report=False)
     arguments = ["compare", "--quiet", "--insects", "hawkmoth", "--policy", str(tmp_path / "run")]
     arguments += ["--out", str(tmp_path / "out")]
     assert command.main([*arguments, "--problem", "profile-drag"]) == 2
