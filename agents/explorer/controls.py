@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from flapenv.aero.checks import record, require_name, require_scalar
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
-from flapenv.files.plausible import CENTRES, require_plausible
+from flapenv.files.plausible import CENTRES, require_insect
 from flapenv.insects import INSECTS, Insect
 
 OWN_WING = "your own wing"
@@ -158,7 +158,7 @@ def read_insect(name: object, own: object, insects: Mapping[str, Insect]) -> Ins
         wing=Wing(length=number["wing_length"] * 1e-3, mean_chord=number["mean_chord"] * 1e-3, r1_hat=number["r1_hat"]),
         stroke=Stroke(frequency=number["reference_frequency"], **REFERENCE_ANGLES),
     )
-    require_plausible(insect)
+    require_insect(insect)
     return insect
 
 

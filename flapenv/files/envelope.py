@@ -7,16 +7,12 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from flapenv.aero.checks import LONGEST_SHOWN, allowed, is_single, one_line, shown
+from flapenv.aero.checks import LONGEST_SHOWN, allowed, one_line, shown
 from flapenv.aero.parameters import STROKE_PARAMETERS
-from flapenv.aero.stroke import Stroke
-from flapenv.insects import Insect
 from flapenv.read_json import require_file
 
 VERSION = 1
 """Of both formats; a file of another one is refused."""
-LONGEST_NAME = 100
-"""Letters of an insect's."""
 STROKE_UNITS = {name: row.unit or "-" for name, row in STROKE_PARAMETERS.items()}
 """By field of a stroke."""
 WING_UNITS = {"mass": "kg", "length": "m", "frequency": "Hz", "angle": "rad", "specific_power": "W/kg"}
@@ -96,21 +92,6 @@ def require_number(field: str, value: object) -> float:
         told = one_line(json.dumps(value, ensure_ascii=False), LONGEST_SHOWN)
         raise TypeError(f"{field} = {told} is not a number; allowed: one number")
     return value
-
-
-def require_single(part: Stroke | Insect) -> None:
-    """Refuse array fields, and names that would not stand on one line.
-
-    Raises:
-        TypeError: for a field with an axis.
-        ValueError: for a name of many lines.
-    """
-    for field, value in vars(part).items():
-        if not is_single(value):
-            raise TypeError(f"{field} of {type(part).__name__} is an array; allowed: scalar fields")
-    name = getattr(part, "name", "")
-    if not (name.isprintable() and len(name) <= LONGEST_NAME):
-        raise ValueError(f"name = {name[:LONGEST_NAME]!r} is not allowed; allowed: {LONGEST_NAME} visible letters")
 
 
 def require_place(path: Path) -> None:

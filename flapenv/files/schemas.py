@@ -14,12 +14,16 @@ from flapenv.aero.planform import R1_HAT_LIMIT, TabulatedPlanform
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.files import strokes, wings
-from flapenv.files.envelope import LONGEST_NAME, STROKE_UNITS, VERSION, WING_UNITS
-from flapenv.files.plausible import FASTEST, HEAVIEST, LONGEST
+from flapenv.files.envelope import STROKE_UNITS, VERSION, WING_UNITS
+from flapenv.files.plausible import CHORDS, FASTEST, HEAVIEST, LARGEST_FACTOR, LENGTHS, LONGEST_NAME, STEEPEST
 from flapenv.insects import INSECTS, ForceConstants, HoverReference, Insect, WingFactors
-from flapenv.problem import StrokeBox
+from flapenv.problem import RELATIVE, StrokeBox
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
+HIGHEST = {"frequency": FASTEST, "pitch_shape": STEEPEST}
+"""Where a file allows less than a `Stroke`."""
+UNSEEN = r"[\u0000-\u001f\u007f-\u009f\u2028\u2029]"
+"""What no name holds: control characters and line ends; readers refuse whatever does not print."""
 Schema = dict[str, Any]
 
 
@@ -36,12 +40,11 @@ def stroke_schema() -> Schema:
 
 def wing_schema() -> Schema:
     """The schema of a wing file."""
-    length = _number(0, LONGEST, open_low=True, meaning="m")
     columns = {"type": "array", "items": _number(0), "minItems": 2, "maxItems": wings.MOST_RADII}
     metres = _object({"radius": columns, "chord": columns, "rounded": {"type": "boolean"}}, needed=("radius", "chord"))
     own = _wing_fields()
     rest = {name: own[name] for name in wings.OF_A_TABLE}
-    whole = _object({**own, "length": length, "mean_chord": length}, needed=("length", "mean_chord"))
+    whole = _object(own, needed=("length", "mean_chord"))
     wing = {
         "anyOf": [
             {**whole, "anyOf": [{"required": ["r1_hat"]}, {"required": ["planform"]}]},
@@ -49,14 +52,12 @@ def wing_schema() -> Schema:
             _object({"planform_file": {"type": "string", "minLength": 1}, **rest}, needed=("planform_file",)),
         ]
     }
-    stroke = _stroke_fields()
-    stroke["frequency"] = {**stroke["frequency"], "maximum": FASTEST}
+    both = [{"required": [name, f"{name}_ratio"]} for name in RELATIVE]
     fields = {
         **_insect()["properties"],
-        "mass": _number(0, HEAVIEST, open_low=True, meaning="of the whole body [kg]"),
         "wing": wing,
-        "stroke": _object(stroke, needed=STROKE_UNITS),
-        "limits": _object(_limits(), needed=()),
+        "stroke": _object(_stroke_fields(), needed=STROKE_UNITS),
+        "limits": {**_object(_limits(), needed=()), "not": {"anyOf": both}},
     }
     return _head("Wing", wings.FORMAT, WING_UNITS, fields, needed=wings.NEEDED)
 
@@ -107,7 +108,9 @@ def _record(kind: type, properties: Schema) -> Schema:
 def _stroke_fields() -> Schema:
     """The six numbers of a stroke."""
     return {
-        name: _number(row.low, row.high, open_low=row.open_low, meaning=f"{row.meaning} [{row.unit or '-'}]")
+        name: _number(
+            row.low, HIGHEST.get(name, row.high), open_low=row.open_low, meaning=f"{row.meaning} [{row.unit or '-'}]"
+        )
         for name, row in STROKE_PARAMETERS.items()
     }
 
@@ -117,7 +120,7 @@ def _limits() -> Schema:
     made = {}
     for field in (field.name for field in dataclasses.fields(StrokeBox)):
         row = STROKE_PARAMETERS[field.removesuffix("_ratio")]
-        high = FASTEST if field == "frequency" else row.high
+        high = HIGHEST.get(field, row.high)
         bound = _number(row.low, high, open_low=row.open_low)
         unit = "over the insect's own" if field.endswith("_ratio") else row.unit or "-"
         pair = {"type": "array", "items": bound, "minItems": 2, "maxItems": 2}
@@ -130,8 +133,8 @@ def _wing_fields() -> Schema:
     column = {"type": "array", "items": _number(0), "minItems": 2}
     planform = _record(TabulatedPlanform, {"r_hat": column, "chord": column, "rounded": {"type": "boolean"}})
     return {
-        "length": _number(0, open_low=True, meaning="R, from root to tip [m]"),
-        "mean_chord": _number(0, open_low=True, meaning="c̄ [m]"),
+        "length": _number(*LENGTHS, meaning="R, from root to tip [m]"),
+        "mean_chord": _number(*CHORDS, meaning="c̄ [m]"),
         "r1_hat": _or_null({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": R1_HAT_LIMIT}),
         "planform": _or_null(planform),
         "mass": _or_null(_number(0, open_low=True, meaning="of one wing [kg]")),
@@ -141,15 +144,17 @@ def _wing_fields() -> Schema:
 
 def _insect() -> Schema:
     """The fields of `Insect`, as `Insect.to_dict` gives them."""
-    positive = _number(0, open_low=True)
+    positive, factor = _number(0, LARGEST_FACTOR, open_low=True), _number(1, LARGEST_FACTOR)
     reference = _record(HoverReference, {"weight_support": _number(), "specific_power": _or_null(_number())})
-    factors = {"k_ind": _number(1), "k_tip": _number(1), "k_revolving": _or_null(_number(1))}
-    constants = {"lift_constant": positive, "zero_drag": _number(0), "normal_drag": _number(0)}
+    factors = {"k_ind": factor, "k_tip": factor, "k_revolving": _or_null(factor)}
+    constant = _number(0, LARGEST_FACTOR)
+    constants = {"lift_constant": positive, "zero_drag": constant, "normal_drag": constant}
+    name = {"type": "string", "maxLength": LONGEST_NAME, "pattern": r"\S", "not": {"pattern": UNSEEN}}
     return _record(
         Insect,
         {
-            "name": {"type": "string", "minLength": 1, "maxLength": LONGEST_NAME},
-            "mass": _number(0, open_low=True, meaning="of the whole body [kg]"),
+            "name": name,
+            "mass": _number(0, HEAVIEST, open_low=True, meaning="of the whole body [kg]"),
             "wing": _record(Wing, _wing_fields()),
             "stroke": _record(Stroke, _stroke_fields()),
             "k_table": _or_null(_record(WingFactors, factors)),

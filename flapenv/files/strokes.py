@@ -19,8 +19,8 @@ from flapenv.files.envelope import (
     require_keys,
     require_number,
     require_place,
-    require_single,
 )
+from flapenv.files.plausible import require_insect, require_stroke
 from flapenv.insects import INSECTS, as_insect, described, load_insect
 from flapenv.read_json import read_object
 from flapenv.whole_file import json_text, write_text
@@ -43,7 +43,8 @@ class NamedStroke:
 
     Raises:
         TypeError: for another kind, or array fields.
-        ValueError: for an unknown name.
+        ValueError: for an unknown name, the name of one of `INSECTS` with other numbers, and numbers that are no
+            flapping wing's.
     """
 
     stroke: Stroke
@@ -57,8 +58,8 @@ class NamedStroke:
             raise TypeError(f"stroke = {self.stroke!r} is not allowed; allowed: a Stroke or a dict of its fields")
         if self.insect is not None:
             object.__setattr__(self, "insect", as_insect(self.insect))
-            require_single(self.insect)
-        require_single(self.stroke)
+            require_insect(self.insect)
+        require_stroke(self.stroke)
 
 
 def read_strokes(path: str | os.PathLike[str]) -> tuple[NamedStroke, ...]:

@@ -17,11 +17,10 @@ from flapenv.files.envelope import (
     require_format,
     require_keys,
     require_place,
-    require_single,
 )
-from flapenv.files.plausible import FASTEST, require_plausible
+from flapenv.files.plausible import FASTEST, STEEPEST, require_insect
 from flapenv.files.strokes import stroke_of
-from flapenv.insects import INSECTS, Insect, described
+from flapenv.insects import Insect
 from flapenv.problem import HoverProblem, StrokeBox
 from flapenv.read_json import read_object
 from flapenv.whole_file import json_text, write_text
@@ -57,12 +56,7 @@ class WingFile:
         """Check both; a limit may be one number, which fixes its parameter."""
         if not isinstance(self.insect, Insect):
             raise TypeError(f"insect = {self.insect!r} is not allowed; allowed: an Insect")
-        require_single(self.insect)
-        if self.insect.name in INSECTS and isinstance(described(self.insect), dict):
-            raise ValueError(
-                f"name = {self.insect.name!r} is that of an insect with other numbers; allowed: a name of one's own"
-            )
-        require_plausible(self.insect)
+        require_insect(self.insect)
         if not isinstance(self.limits, Mapping):
             raise TypeError(f"limits = {shown(self.limits)} are not allowed; allowed: an object of [lower, upper]")
         with errors_of("limits"):
@@ -70,10 +64,7 @@ class WingFile:
                 if bounds is None:
                     raise TypeError(f"bounds of {name} = null are not allowed; allowed: [lower, upper] or one number")
             box = StrokeBox(**self.limits)
-            if box.frequency is not None and box.frequency[1] > FASTEST:
-                raise ValueError(
-                    f"upper bound of frequency = {box.frequency[1]:.6g} is not allowed; allowed: up to {FASTEST:g} Hz"
-                )
+            _require_bounds(box, float(self.insect.stroke.frequency))
         object.__setattr__(self, "limits", {name: getattr(box, name) for name in self.limits})
 
     def problem(self, base: HoverProblem) -> HoverProblem:
@@ -112,6 +103,20 @@ class WingFile:
                 "problem"
             )
         return common
+
+
+def _require_bounds(box: StrokeBox, own_frequency: float) -> None:
+    """Refuse bounds beyond what is allowed of the strokes themselves."""
+    for field, most, unit in (
+        ("frequency", FASTEST, " Hz"),
+        ("frequency_ratio", FASTEST / own_frequency, f", as {FASTEST:g} Hz are over the insect's own"),
+        ("pitch_shape", STEEPEST, ""),
+    ):
+        bounds = getattr(box, field)
+        if bounds is not None and bounds[1] > most:
+            raise ValueError(
+                f"upper bound of {field} = {bounds[1]:.6g} is not allowed; allowed: up to {most:.6g}{unit}"
+            )
 
 
 def read_wing(path: str | os.PathLike[str]) -> WingFile:
