@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from agents.one_line_parser import OneLineParser, folder
+from agents.one_line_parser import OneLineParser, folder, said
 from agents.train_command import what_counts
 
 DEFAULT_POLICY = "hover"
@@ -89,11 +89,11 @@ def evaluate_command(arguments: list[str]) -> int:
             return 0
         subjects = options.subjects or [DEFAULT_POLICY]
         asked, folders = _asked(options), _folders(subjects, options.out)
-        command = shlex.join(["python", "train.py", "evaluate", *what_counts(arguments)])
+        command = shlex.join(["python", "train.py", "evaluate", *_what_counts(arguments, subjects)])
         for subject, kept in zip(subjects, folders, strict=True):
             print(_told(subject, asked, kept, command), flush=True)
-    except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
-        print(f"train.py evaluate: {mistake}", file=sys.stderr)
+    except (ValueError, TypeError, OSError, ArithmeticError, MemoryError) as mistake:
+        print(f"train.py evaluate: {said(mistake)}", file=sys.stderr)
         return 2
     return 0
 
@@ -117,28 +117,41 @@ def _asked(options: argparse.Namespace) -> Any:
 
 
 def _folders(subjects: list[str], out: Path | None) -> list[Path | None]:
-    """A folder for what is kept of each before anything is judged; None where nothing is to be kept.
+    """Where what is kept of each will lie, checked before anything is judged; None where nothing is to be kept.
 
     Raises:
         ValueError: for two of one name.
         OSError: for a folder that cannot be used.
     """
-    from agents.run_folder import open_run_folder
+    from agents.run_folder import require_free_folder
 
     if out is None:
         return [None] * len(subjects)
-    names = [_folder_name(Path(subject)) for subject in subjects]
+    names = [_folder_name(subject) for subject in subjects]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"{names.count(name)} subjects are called {name!r}; allowed with --out: each name once")
-    return [open_run_folder(out / name, "") for name in names]
+    for name in names:
+        require_free_folder(out / name)
+    return [out / name for name in names]
 
 
-def _folder_name(subject: Path) -> str:
+def _folder_name(subject: str) -> str:
     """What the folder of a subject is called."""
-    if subject.suffix == ".safetensors":
-        return subject.parent.name
-    return subject.stem if subject.suffix in (".json", ".csv") else subject.name
+    from agents.run_folder import real_name
+    from flapenv.files.strokes import ENDINGS
+
+    path = Path(subject)
+    if path.suffix == ".safetensors":
+        return real_name(path.parent)
+    return path.stem if path.suffix.lower() in ENDINGS else real_name(subject)
+
+
+def _what_counts(arguments: list[str], subjects: list[str]) -> list[str]:
+    """The arguments that a verdict depends on, files by their names only."""
+    from agents.run_folder import real_name
+
+    return [real_name(one) if one in subjects else one for one in what_counts(arguments)]
 
 
 def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
@@ -165,14 +178,16 @@ def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
 def _keep(found: Any, kept: Path, command: str) -> None:
     """Write results.json, the picture and the report."""
     from agents.report.of_run import report_of_evaluation
-    from agents.run_folder import RESULT_PICTURE, RESULTS, versions
+    from agents.run_folder import RESULT_PICTURE, RESULTS, open_run_folder, versions
     from flapenv.whole_file import write_json
 
     verdict = found.verdict
     scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": found.about["distance"]}
     about = {name: value for name, value in found.about.items() if name != "distance"}
+    picture = found.draw()
+    open_run_folder(kept, "")
     write_json(kept / RESULTS, {**about, "verdict": scores, **verdict.results, "versions": versions()})
-    found.draw().savefig(kept / RESULT_PICTURE)
+    picture.savefig(kept / RESULT_PICTURE)
     report_of_evaluation(found, kept, command)
 
 

@@ -12,22 +12,20 @@ from agents.policy_file import find_policy, load_policy, shipped_policies
 from agents.predictor import Predictor
 from agents.presets import Preset
 from agents.recurrent_actor import AnyActor
+from agents.run_folder import real_name
+from agents.stroke_pairs import PUBLISHED, is_strokes, stroke_pairs
 from agents.tasks import TASKS, HoverTask, RandomWingsTask, Task, Verdict
 from agents.tasks.hover_picture import draw_strokes
 from agents.tasks.stroke_verdict import verdict_of
-from flapenv.aero.checks import allowed, record, require_name
-from flapenv.aero.stroke import Stroke
+from flapenv.aero.checks import allowed, record, require_name, shown
 from flapenv.assessment import assess
-from flapenv.files import WingFile, read_strokes
-from flapenv.insects import INSECTS, Insect, load_insect
-from flapenv.problem import as_problem
+from flapenv.files import WingFile
+from flapenv.files.envelope import errors_of
+from flapenv.insects import INSECTS
+from flapenv.problem import HoverProblem, as_problem
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-PUBLISHED = "published"
-"""The name of the eight insects' own strokes, Table 1."""
-STROKE_FILES = (".json", ".csv")
 
 
 @record
@@ -81,7 +79,7 @@ class Evaluated:
 
     def draw(self) -> "Figure":
         """A picture of what was judged."""
-        if self.task is None or self.policy is None:
+        if self.task is None or self.policy is None or isinstance(self.task, HoverTask):
             return draw_strokes(self.verdict.assessments, self.called)
         return self.task.draw(self.policy)
 
@@ -100,12 +98,12 @@ def evaluated(subject: str | os.PathLike[str], asked: Asked) -> Evaluated:
         OSError: for files that cannot be read.
     """
     name = os.fspath(subject)
-    if name not in shipped_policies() and (name in (*INSECTS, PUBLISHED) or Path(name).suffix in STROKE_FILES):
+    if name not in shipped_policies() and is_strokes(name):
         return _evaluated_strokes(name, asked)
     if not Path(name).exists() and name not in shipped_policies() and not Path(name).suffix and Path(name).name == name:
         files = ("a run's folder", "NAME.safetensors", "NAME.json", "NAME.csv")
         known = [*shipped_policies(), PUBLISHED, *INSECTS, *files]
-        raise ValueError(f"{name!r} is unknown; {allowed(name, known)}")
+        raise ValueError(f"{shown(name)} is unknown; {allowed(name, known)}")
     return _evaluated_policy(name, asked)
 
 
@@ -117,14 +115,16 @@ def _evaluated_policy(name: str, asked: Asked) -> Evaluated:
     if card.environment != task.environment:
         raise ValueError(f"the card of {name} says {card.environment}, its task flies {task.environment}")
     card.require_fit(task.vector_env(1))
-    flown = NoisyActuators(actor, asked.noise) if asked.noise else actor
+    with errors_of("--noise"):
+        flown = NoisyActuators(actor, asked.noise) if asked.noise else actor
     verdict = _judged(task, flown, asked.wings)
     more = [*_robustness(actor, task, asked), *_costs(actor, task, card, asked)]
+    known = real_name(name)
     return Evaluated(
-        title=f"{name}: {card.algorithm} on {card.environment}, {card.wingbeats:,} wingbeats, seed {card.seed}",
+        title=f"{known}: {card.algorithm} on {card.environment}, {card.wingbeats:,} wingbeats, seed {card.seed}",
         verdict=verdict,
         about={
-            "policy": Path(name).name,
+            "policy": known,
             "sha256": card.sha256,
             "noise": asked.noise,
             "distance": task.distance,
@@ -162,7 +162,7 @@ def _judged(task: Task, flown: Predictor, wings: Sequence[WingFile]) -> Verdict:
     strokes = Comparison(task.insects, task.problem).strokes(flown)
     return verdict_of(
         [
-            assess(wing.insect, stroke, wing.problem(task.problem))
+            assess(wing.insect, stroke, wing_problem(wing, task.problem))
             for wing, (_, stroke) in zip(wings, strokes, strict=True)
         ],
         task.problem,
@@ -194,62 +194,30 @@ def _costs(actor: AnyActor, task: Task, card: PolicyCard, asked: Asked) -> list[
 def _evaluated_strokes(name: str, asked: Asked) -> Evaluated:
     """The verdict on strokes that were published, or that a file holds."""
     for option in ("noise", "robustness", "costs", "pool_seed"):
-        if getattr(asked, option):
+        if getattr(asked, option) != getattr(Asked(), option):
             raise ValueError(f"--{option.replace('_', '-')} is not told of strokes; allowed: a policy, not {name}")
-    if name in (*INSECTS, PUBLISHED):
-        if asked.wings:
-            raise ValueError(f"--wing does not go with {name}, whose strokes belong to the insects; allowed: --insects")
-        names = asked.insects or (INSECTS if name == PUBLISHED else [name])
-        pairs = [(insect, insect.stroke) for insect in map(load_insect, names)]
-        called = PUBLISHED
-        if name != PUBLISHED and list(names) != [name]:
-            raise ValueError(f"--insects {' '.join(names)} does not go with {name}; allowed: {PUBLISHED} --insects ...")
-    else:
-        pairs, called = _pairs(Path(name), asked), "given"
-    problem = as_problem(asked.problem)
-    limited = [wing.problem(problem) for wing in asked.wings] or [problem] * len(pairs)
+    pairs = stroke_pairs(name, asked.insects or (), [wing.insect for wing in asked.wings])
+    problem, told = as_problem(asked.problem), []
+    light = [insect.name for insect, _ in pairs if insect.wing.mass is None]
+    if problem.model.accounting == "positive" and name == PUBLISHED and not asked.insects and light:
+        pairs = [(insect, stroke) for insect, stroke in pairs if insect.name not in light]
+        told = [f"left out, as their wing masses are not known: {', '.join(light)}"]
+    limited = [wing_problem(wing, problem) for wing in asked.wings] or [problem] * len(pairs)
+    called = PUBLISHED if name in (*INSECTS, PUBLISHED) else "given"
     verdict = verdict_of(
         [assess(insect, stroke, own) for (insect, stroke), own in zip(pairs, limited, strict=True)], problem, called
     )
+    known = real_name(name)
     return Evaluated(
-        title=f"{name}: {len(pairs)} stroke{'s' * (len(pairs) > 1)}, in the problem {problem.name}",
+        title=f"{known}: {len(pairs)} stroke{'s' * (len(pairs) > 1)}, in the problem {problem.name}",
         verdict=verdict,
-        about={"strokes": Path(name).name, "distance": HoverTask.distance},
+        about={"strokes": known, "distance": HoverTask.distance},
+        told=told,
         called=called,
     )
 
 
-def _pairs(path: Path, asked: Asked) -> list[tuple[Insect, Stroke]]:
-    """The insects and strokes of a file, those that are asked for; a single stroke of nobody is given to each of them.
-
-    Raises:
-        ValueError: where it is open which stroke is whose.
-    """
-    found = read_strokes(path)
-    given = [wing.insect for wing in asked.wings] or [load_insect(name) for name in asked.insects or ()]
-    nobodys = [one.stroke for one in found if one.insect is None]
-    if len(nobodys) == len(found) == 1 and given:
-        pairs = [(insect, nobodys[0]) for insect in given]
-    elif nobodys:
-        raise ValueError(
-            f"{path} does not say whose {len(nobodys)} of {len(found)} strokes are; allowed: an insect with every "
-            "stroke, or one stroke alone with --insects NAME or --wing FILE"
-        )
-    else:
-        pairs = _chosen(path, [(one.insect, one.stroke) for one in found], given)
-    names = [insect.name for insect, _ in pairs]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise ValueError(f"{path} has several strokes of {', '.join(twice)}; allowed: one an insect")
-    return pairs
-
-
-def _chosen(path: Path, pairs: list[tuple[Insect, Stroke]], given: Sequence[Insect]) -> list[tuple[Insect, Stroke]]:
-    """The strokes of those given, by name, or all where nobody is."""
-    if not given:
-        return pairs
-    strokes = {insect.name: stroke for insect, stroke in pairs}
-    missing = [insect.name for insect in given if insect.name not in strokes]
-    if missing:
-        raise ValueError(f"{path} has no stroke of {', '.join(missing)}; allowed: {', '.join(strokes)}")
-    return [(insect, strokes[insect.name]) for insect in given]
+def wing_problem(wing: WingFile, base: HoverProblem) -> HoverProblem:
+    """A problem within a wing's limits; errors say whose they are."""
+    with errors_of(f"--wing, {wing.insect.name}"):
+        return wing.problem(base)

@@ -4,6 +4,8 @@ import argparse
 from pathlib import Path
 from typing import Any, NoReturn
 
+from flapenv.aero.checks import one_line
+
 
 class OneLineParser(argparse.ArgumentParser):
     """`ArgumentParser` without the usage before an error, without abbreviations, its texts kept as they are written."""
@@ -14,7 +16,12 @@ class OneLineParser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print the mistake and end with code 2."""
-        self.exit(2, f"{self.prog}: {message}; see --help\n")
+        self.exit(2, f"{self.prog}: {one_line(message)}; see --help\n")
+
+
+def said(mistake: Exception) -> str:
+    """A mistake in one line."""
+    return one_line(mistake) or ("not enough memory" if isinstance(mistake, MemoryError) else type(mistake).__name__)
 
 
 def folder(text: str) -> Path:

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.one_line_parser import OneLineParser, folder
+from agents.one_line_parser import OneLineParser, folder, said
 
 if TYPE_CHECKING:
     from flapenv import HoverProblem, Insect, Optimum
@@ -53,8 +53,8 @@ def optimum_command(arguments: list[str]) -> int:
         if options.out is not None:
             keep(solved, options.out)
             print(f"kept in {options.out}")
-    except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
-        print(f"train.py optimum: {mistake}", file=sys.stderr)
+    except (ValueError, TypeError, OSError, ArithmeticError, MemoryError) as mistake:
+        print(f"train.py optimum: {said(mistake)}", file=sys.stderr)
         return 2
     return 0
 

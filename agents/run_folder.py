@@ -6,6 +6,7 @@ from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 
+from flapenv.aero.checks import one_line
 from flapenv.whole_file import whole_file
 
 CONFIG, RESULTS, POLICY, CURVE = "config.json", "results.json", "policy.zip", "curve.csv"
@@ -33,15 +34,34 @@ def open_run_folder(out: Path | None, name: str) -> Path:
         out, number = RUNS / name, 2
         while out.exists():
             out, number = RUNS / f"{name}-{number}", number + 1
+    require_free_folder(out)
+    out.mkdir(parents=True, exist_ok=True)
+    return out
+
+
+def require_free_folder(out: Path) -> None:
+    """Refuse a folder that could not be made or written, or holds a run; nothing is made.
+
+    Raises:
+        FileExistsError: if it holds a file that a run writes, which would be lost.
+        NotADirectoryError: if it is a file, or lies in one.
+        OSError: if it cannot be written.
+    """
     taken = [name for name in FILES if (out / name).exists()]
     if taken:
         raise FileExistsError(f"--out {out} holds {', '.join(taken)} already; allowed: a folder without a run in it")
-    if out.exists() and not out.is_dir():
-        raise NotADirectoryError(f"--out {out} is a file; allowed: a folder")
-    out.mkdir(parents=True, exist_ok=True)
-    if not os.access(out, os.W_OK):
-        raise PermissionError(f"--out {out} cannot be written")
-    return out
+    nearest = next((one for one in (out, *out.absolute().parents) if one.exists()), Path.cwd())
+    if not nearest.is_dir():
+        raise NotADirectoryError(f"--out {out}: {nearest} is a file; allowed: a folder")
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise PermissionError(f"--out {out}: {nearest} cannot be written; allowed: a folder that can")
+
+
+def real_name(path: str | os.PathLike[str]) -> str:
+    """The last part of a path without where on this machine it lies: also of `.`, `..` and a path that ends in `/`."""
+    told = os.fspath(path)
+    plain = Path(told).name
+    return one_line(plain if plain == told != ".." else Path(os.path.realpath(told)).name)
 
 
 def write_atomically(path: Path, write: Callable[[Path], object]) -> None:

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from agents.one_line_parser import OneLineParser, folder
+from agents.one_line_parser import OneLineParser, folder, said
 from flapenv.aero.checks import allowed
 
 CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "versions")
@@ -96,7 +96,7 @@ def train_command(arguments: list[str]) -> int:
 
         result = train(config, options.out, progress=not options.quiet, report=not options.no_report)
     except (ValueError, TypeError, OSError, ArithmeticError, MemoryError) as mistake:
-        print(f"train.py: {str(mistake) or 'not enough memory'}", file=sys.stderr)
+        print(f"train.py: {said(mistake)}", file=sys.stderr)
         return 1 if isinstance(mistake, ArithmeticError) else 2
     print(summary(result), flush=True)
     return 130 if result.interrupted else 0

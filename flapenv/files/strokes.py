@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from flapenv.aero.checks import record, require_name, shown
+from flapenv.aero.checks import LONGEST_SHOWN, one_line, record, require_name, shown
 from flapenv.aero.stroke import Stroke
 from flapenv.files.columns import heading, read_columns
 from flapenv.files.envelope import (
@@ -175,15 +175,20 @@ def _from_results(insects: Mapping[str, Any]) -> tuple[NamedStroke, ...]:
     """The learned strokes of a run's results.json."""
     strokes = []
     for name, entry in insects.items():
-        where = f"insects.{name}"
-        if name not in INSECTS:
+        where = f"insects.{one_line(name, LONGEST_SHOWN)}"
+        if not isinstance(entry, dict) or "stroke" not in entry:
+            raise ValueError(f"{where} holds no stroke; allowed: the results of a run on Hover-v0")
+        if name not in INSECTS and "insect" not in entry:
             raise ValueError(
                 f"{where} is none of {', '.join(INSECTS)}, and the file does not describe it; allowed: a stroke file, "
                 "which does"
             )
-        if not isinstance(entry, dict) or "stroke" not in entry:
-            raise ValueError(f"{where} holds no stroke; allowed: the results of a run on Hover-v0")
-        strokes.append(NamedStroke(stroke=stroke_of(entry["stroke"], f"{where}.stroke"), insect=load_insect(name)))
+        stroke = stroke_of(entry["stroke"], f"{where}.stroke")
+        with errors_of(where):
+            found = NamedStroke(stroke=stroke, insect=entry.get("insect", name))
+            if found.insect is None or found.insect.name != name:
+                raise ValueError(f"insect = {shown(entry['insect'])} is not the one it stands under; allowed: {name!r}")
+        strokes.append(found)
     if not strokes:
         raise ValueError("insects holds none; allowed: the results of a run on Hover-v0")
     return tuple(strokes)

@@ -43,9 +43,21 @@ def test_what_is_evaluated_is_what_the_run_ended_with(
     code, out, _ = evaluated(capsys, hover, "--out", tmp_path)
     assert code == 0
     assert "9,024 wingbeats, seed 4" in out
+    card = json.loads((hover / "policy.json").read_text(encoding="utf-8"))
+    assert json.loads((tmp_path / "run" / "results.json").read_text(encoding="utf-8"))["sha256"] == card["sha256"]
+    assert str(hover.parent) not in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
     ended, again = (json.loads((f / "results.json").read_text(encoding="utf-8")) for f in (hover, tmp_path / "run"))
     assert again["verdict"]["mean"] == pytest.approx(ended["verdict"]["mean"], rel=1e-4)
     assert (tmp_path / "run" / "learned.png").stat().st_size > 20_000
+
+
+@pytest.mark.parametrize("subject", [".", "../run/", "policy.safetensors"])
+def test_a_run_is_called_by_its_own_name_however_one_points_at_it(
+    subject: str, hover: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(hover)
+    assert evaluated(capsys, subject, "--insects", "hawkmoth", "--out", tmp_path / "kept")[0] == 0
+    assert [path.name for path in (tmp_path / "kept").iterdir()] == ["run"]
 
 
 def test_noise_other_models_and_other_insects_are_told(hover: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,5 +113,5 @@ def test_bad_input_is_one_line_and_nothing_is_unpickled(
         code, _, err = evaluated(capsys, *arguments)
         assert code == 2, arguments
         assert said in err
-        assert len(err.strip().splitlines()) == 1, err
+        assert err.removesuffix("\n").isprintable(), err
     assert not (tmp_path / "boom").exists()

@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 import train as command
-from flapenv import INSECTS, Stroke, load_insect, optimum
+from agents.evaluated import Asked
+from agents.evaluated import evaluated as judged
+from flapenv import INSECTS, HoverProblem, Stroke, load_insect, optimum, read_strokes
 from flapenv.files import NamedStroke, WingFile, write_strokes, write_wing
 from flapenv.simulation import evaluate_by_blade_element
 from flapenv.validation import table3
@@ -103,11 +105,99 @@ def test_a_wing_of_ones_own_is_held_against_its_limits(tmp_path: Path, capsys: p
     assert line_of(out, "robot")[1] == f"{evaluate_by_blade_element(robot, SLOW, **FINE)[0]:.4f}"
 
 
+def test_strokes_of_a_file_are_judged_in_the_problem_that_is_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "moth.JSON"
+    write_strokes(file, [NamedStroke(insect="hawkmoth", stroke=load_insect("hawkmoth").stroke)])
+    code, out, _ = evaluated(capsys, file, "--problem", "profile-drag", "--out", tmp_path)
+    assert code == 0
+    kept = json.loads((tmp_path / "moth" / "results.json").read_text(encoding="utf-8"))
+    best = optimum("hawkmoth", "profile-drag")
+    assert kept["problem"]["name"] == "profile-drag"
+    assert kept["insects"]["hawkmoth"]["optimum_specific_power"] == best.specific_power
+    assert line_of(out, "hawkmoth")[4] == f"{best.specific_power:.2f}"
+
+
+def test_limits_of_a_wing_bound_the_optimum_its_strokes_are_held_against_and_the_picture_shows_that_one(
+    tmp_path: Path,
+) -> None:
+    robot = dataclasses.replace(load_insect("dronefly"), name="robot", k_table=None, cfd=None)
+    wing = WingFile(insect=robot, limits={"flap_amplitude": (math.radians(40), math.radians(50))})
+    write_strokes(tmp_path / "one.json", [NamedStroke(insect=robot, stroke=SLOW)])
+    for subject in (tmp_path / "one.json", "random-wings"):
+        found = judged(subject, Asked(wings=[wing]))
+        (one,) = found.verdict.assessments
+        assert one.best == optimum(robot, wing.problem(HoverProblem()))
+        assert one.best.specific_power > 1.01 * optimum(robot).specific_power
+        (panel,) = [axes for axes in found.draw().axes if axes.get_visible()]
+        assert f"(optimal {one.best.stroke.frequency:.4g})" in panel.get_title()
+
+
+def test_what_is_kept_of_a_wing_of_ones_own_can_be_judged_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot = dataclasses.replace(load_insect("dronefly"), name="robot", k_table=None, cfd=None)
+    limits = {"flap_amplitude": (math.radians(40), math.radians(60))}
+    wing = tmp_path / "robot.json"
+    write_wing(wing, WingFile(insect=robot, limits=limits))
+    _, first, _ = evaluated(capsys, "random-wings", "--wing", wing, "--out", tmp_path)
+    results = tmp_path / "random-wings" / "results.json"
+    (read,) = read_strokes(results)
+    assert read.insect == robot
+    entry = json.loads(results.read_text(encoding="utf-8"))["insects"]["robot"]
+    assert HoverProblem(**entry["problem"]) == WingFile(insect=robot, limits=limits).problem(HoverProblem())
+    _, again, _ = evaluated(capsys, results, "--wing", wing)
+    assert line_of(again, "robot") == line_of(first, "robot")
+    page = (tmp_path / "random-wings" / "report.html").read_text(encoding="utf-8")
+    assert "train.py evaluate random-wings --wing robot.json" in page
+    _, _, _ = evaluated(capsys, results, "--out", tmp_path / "again")
+    kept = (tmp_path / "again" / "results").iterdir()
+    assert all(str(tmp_path).encode() not in file.read_bytes() for file in kept)
+
+
+def test_insects_without_a_wing_mass_are_left_out_of_the_published_where_it_counts(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    code, out, _ = evaluated(capsys, "published", "--problem", "inertial")
+    assert code == 0
+    assert [word for word in INSECTS if f"\n{word} " in out] == ["fruitfly", "bumblebee", "hawkmoth"]
+    assert "left out, as their wing masses are not known: honeybee, cranefly" in out
+    assert evaluated(capsys, "published", "--insects", "honeybee", "--problem", "inertial")[0] == 2
+
+
+def test_what_fails_leaves_no_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "bad.json").write_text("{")
+    (tmp_path / "file").touch()
+    for arguments, said in (
+        ((tmp_path / "bad.json", "--out", tmp_path / "out"), "bad.json is not JSON"),
+        (("..", "--out", tmp_path / "out"), "safetensors"),
+        (("hawkmoth", "--out", tmp_path / "file"), "file is a file; allowed: a folder"),
+        (("hawkmoth", "--problem", "free", "--out", tmp_path / "out"), "'free' is unknown"),
+    ):
+        code, out, err = evaluated(capsys, *arguments)
+        assert (code, out) == (2, "")
+        assert said in err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.json", "file"]
+
+
+def test_too_little_memory_is_one_line(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: Any) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("agents.evaluated.evaluated", full)
+    assert evaluated(capsys, "hawkmoth") == (2, "", "train.py evaluate: not enough memory\n")
+
+
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     bee = [NamedStroke(insect="honeybee", stroke=SLOW)]
     write_strokes(tmp_path / "bee.json", bee)
     write_strokes(tmp_path / "two.json", bee * 2)
     write_wing(tmp_path / "wing.json", WingFile(insect=load_insect("hawkmoth")))
+    write_strokes(tmp_path / "one.csv", [NamedStroke(stroke=SLOW)])
+    fixed = "--problem", "fixed-frequency"
+    far = WingFile(insect=dataclasses.replace(load_insect("hawkmoth"), name="moth"), limits={"frequency": (50, 60)})
+    write_wing(tmp_path / "far.json", far)
     text = (tmp_path / "bee.json").read_text(encoding="utf-8")
     (tmp_path / "degrees.json").write_text(text.replace('"flap_amplitude": 1.0', '"flap_amplitude": 60'), "utf-8")
     (tmp_path / "cut.json").write_text(text[: len(text) // 2], encoding="utf-8")
@@ -122,6 +212,12 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
         ((tmp_path / "bee.json", "--wing", tmp_path / "wing.json"), "no stroke of hawkmoth"),
         ((tmp_path / "bee.json", "--noise", "0.1"), "--noise is not told of strokes"),
         ((tmp_path / "bee.json", "--pool-seed", "1"), "--pool-seed is not told of strokes"),
+        ((tmp_path / "bee.json", "--pool-seed", "0"), "--pool-seed is not told of strokes"),
+        (("published", "--insects", "hawkmoth", "hawkmoth"), "published has several strokes of hawkmoth"),
+        (("hover", "--noise", "nan"), "--noise: share = nan"),
+        ((tmp_path / "one.csv", "--wing", tmp_path / "far.json", *fixed), "--wing, moth: limits of frequency leave"),
+        (("a\nb\x1b[31m" * 100,), r"'a\nb\x1b[31m"),
+        (("a" * 5000 + ".json",), "File name too long"),
         (("hawkmoth", "--wing", tmp_path / "wing.json"), "belong to the insects"),
         (("hawkmoth", "--insects", "honeybee"), "published --insects"),
         (("hover", "--wing", tmp_path / "wing.json", "--insects", "honeybee"), "allowed: one of them"),
@@ -131,4 +227,5 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
         code, out, err = evaluated(capsys, *arguments)
         assert (code, out) == (2, ""), arguments
         assert said in err
-        assert len(err.strip().splitlines()) == 1, err
+        assert err.removesuffix("\n").isprintable(), err
+        assert len(err) < 1200

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from agents.run_folder import FILES, open_run_folder, versions, write_atomically
+from agents.run_folder import FILES, open_run_folder, real_name, require_free_folder, versions, write_atomically
 
 
 def test_an_unnamed_run_gets_the_next_free_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -23,6 +23,22 @@ def test_a_folder_that_holds_a_run_is_refused_and_any_other_taken(tmp_path: Path
         (tmp_path / name).unlink()
     with pytest.raises(NotADirectoryError, match="is a file; allowed: a folder"):
         open_run_folder(tmp_path / "a" / "b" / "notes.txt", "hover")
+
+
+def test_asking_whether_a_folder_is_free_makes_none(tmp_path: Path) -> None:
+    require_free_folder(tmp_path / "a" / "b")
+    (tmp_path / "file").touch()
+    with pytest.raises(NotADirectoryError, match="file is a file; allowed: a folder"):
+        require_free_folder(tmp_path / "file" / "b")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def test_a_path_is_called_by_its_last_part_wherever_it_lies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "run" / "deep").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path / "run" / "deep")
+    for path, name in (("..", "run"), (".", "deep"), ("../deep/", "deep"), ("hover", "hover"), ("a/b.json", "b.json")):
+        assert real_name(path) == name
+    assert real_name("a\nb") == r"a\nb"
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path: Path) -> None:

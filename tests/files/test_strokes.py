@@ -118,6 +118,10 @@ def in_millimetres() -> dict[str, Any]:
     return HAWKMOTH.to_dict() | {"name": "moth", "wing": HAWKMOTH.to_dict()["wing"] | {"length": 51.9}}
 
 
+def valid_stroke() -> dict[str, float]:
+    return dataclasses.asdict(HAWKMOTH.stroke)
+
+
 def results(**insects: Any) -> dict[str, Any]:
     return {"insects": insects}
 
@@ -168,7 +172,13 @@ def results(**insects: Any) -> dict[str, Any]:
         (with_entry(insect="a\n\u0085"), r"insect = 'a.n.x85' is unknown"),
         (results(**{"a\nb\x1b": {"stroke": {}}}), r"insects.a.nb.x1b is none of"),
         (results(), "insects holds none"),
-        (results(robot={}), "insects.robot is none of fruitfly, .*allowed: a stroke file"),
+        (results(robot={"stroke": {}}), "insects.robot is none of fruitfly, .*allowed: a stroke file"),
+        (
+            results(moth={"stroke": valid_stroke(), "insect": HAWKMOTH.to_dict() | {"name": "b"}}),
+            "not the one it stands",
+        ),
+        (results(moth={"stroke": valid_stroke(), "insect": HAWKMOTH.to_dict()}), "not the one it stands under"),
+        (results(moth={"stroke": valid_stroke(), "insect": None}), "insect = None is not the one it stands under"),
         (results(hawkmoth={"gap": 1}), "insects.hawkmoth holds no stroke"),
         (results(hawkmoth={"stroke": [1]}), r"insects.hawkmoth.stroke = \[1\] is not allowed"),
         (results(hawkmoth={"stroke": {}}), "insects.hawkmoth.stroke: frequency, .* not told"),
