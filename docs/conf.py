@@ -32,15 +32,14 @@ release = version = flapenv.__version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["_build"]
 highlight_language = "text"
-default_role = "code"
-nitpick_ignore_regex = [(r"py:.*", rf"(?!{OWN}).*")]
+default_role = "py:obj"  # a name in backticks is a link where the site has it
+nitpick_ignore_regex = [(r"py:obj", ".*"), (r"py:.*", rf"(?!{OWN}).*")]
 
 myst_heading_anchors = 3
 myst_enable_extensions = ["colon_fence"]
 
 autoclass_content = "both"
 autodoc_member_order = "bysource"
-autodoc_preserve_defaults = True
 napoleon_numpy_docstring = False
 napoleon_use_ivar = True
 python_use_unqualified_type_names = True
