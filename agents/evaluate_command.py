@@ -1,12 +1,13 @@
-"""`python train.py evaluate`: judge policies that were shipped or trained, in calm, with noise and in other models."""
+"""`python train.py evaluate`: judge policies and strokes against optimum, CFD and other models."""
 
 import argparse
+import shlex
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from agents.one_line_parser import OneLineParser, folder
+from agents.train_command import what_counts
 
 DEFAULT_POLICY = "hover"
 """The shipped policy that is judged where none is named."""
@@ -19,25 +20,41 @@ def parser() -> argparse.ArgumentParser:
     made = OneLineParser(
         prog="train.py evaluate",
         description=(
-            "Judge policies against their task's reference: a shipped one, a run's, or a file. Weights are read from\n"
-            "safetensors and flown in NumPy; nothing is unpickled."
+            "Judge policies against their task's reference, or strokes against optimum and CFD: a shipped policy, a\n"
+            "run's, a file of strokes, or the insects' own. Weights are read from safetensors and flown in NumPy;\n"
+            "nothing is unpickled."
         ),
         epilog=(
             "examples:\n"
             "  python train.py evaluate --list                     the shipped policies\n"
             "  python train.py evaluate                            the shipped one for the eight insects\n"
             "  python train.py evaluate random-wings heave         others\n"
-            "  python train.py evaluate runs/hover-ppo-seed0 --insects hawkmoth\n"
-            "  python train.py evaluate hover --robustness         2 % actuator noise, and other coefficient models\n"
+            "  python train.py evaluate runs/hover-ppo-seed0 --out judged    with the report, judged/.../report.html\n"
+            "  python train.py evaluate hawkmoth                   an insect's own stroke: its line of Table 3\n"
+            "  python train.py evaluate published                  those of all eight\n"
+            "  python train.py evaluate strokes.json               or .csv; what `explore` and `optimum` write\n"
+            "  python train.py evaluate random-wings --wing docs/examples/robot.json    on a wing of one's own\n"
+            "  python train.py evaluate hover --robustness         2 % actuator noise, told of other models\n"
             "  python train.py evaluate random-wings --costs       what a new wing costs\n"
             "  python train.py evaluate hover --problem profile-drag --out judged"
         ),
     )
     made.add_argument(
-        "policies", nargs="*", metavar="POLICY", help=f"shipped name, run folder or file (default {DEFAULT_POLICY})"
+        "subjects",
+        nargs="*",
+        metavar="WHAT",
+        help=f"shipped policy, run folder, policy file, stroke file, insect or 'published' (default {DEFAULT_POLICY})",
     )
     made.add_argument("--list", action="store_true", help="list the shipped policies and end")
-    made.add_argument("--insects", nargs="+", metavar="NAME", help="other insects than those of the training")
+    made.add_argument("--insects", nargs="+", metavar="NAME", help="other insects than those of the training, or these")
+    made.add_argument(
+        "--wing",
+        type=folder,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="a wing of one's own (JSON), in place of --insects; repeatable",
+    )
     made.add_argument("--problem", metavar="NAME", help="another problem with the same observations and actions")
     made.add_argument("--pool-seed", type=int, metavar="N", help="random wings: another pool of test wings")
     made.add_argument(
@@ -57,114 +74,103 @@ def parser() -> argparse.ArgumentParser:
         action="store_true",
         help="random wings: what a new wing costs, beside multi-start SLSQP and the batched optimum",
     )
-    made.add_argument("--out", type=folder, metavar="DIR", help="keep results.json and the picture of each policy here")
+    made.add_argument(
+        "--out", type=folder, metavar="DIR", help="keep results.json, report.html and the picture of each here"
+    )
     return made
 
 
 def evaluate_command(arguments: list[str]) -> int:
-    """Judge the policies; 0 on success, 2 for bad input."""
+    """Judge what is named; 0 on success, 2 for bad input."""
     options = parser().parse_args(arguments)
     try:
         if options.list:
             print(shipped_table())
             return 0
-        policies = options.policies or [DEFAULT_POLICY]
-        folders = _folders(policies, options.out)
-        for policy, kept in zip(policies, folders, strict=True):
-            print(evaluated(policy, options, kept), flush=True)
+        subjects = options.subjects or [DEFAULT_POLICY]
+        asked, folders = _asked(options), _folders(subjects, options.out)
+        command = shlex.join(["python", "train.py", "evaluate", *what_counts(arguments)])
+        for subject, kept in zip(subjects, folders, strict=True):
+            print(_told(subject, asked, kept, command), flush=True)
     except (ValueError, TypeError, OSError, ArithmeticError) as mistake:
         print(f"train.py evaluate: {mistake}", file=sys.stderr)
         return 2
     return 0
 
 
-def _folders(policies: list[str], out: Path | None) -> list[Path | None]:
-    """A folder for each policy's results before anything is judged; None where none are to be kept.
+def _asked(options: argparse.Namespace) -> Any:
+    """What the options ask for, an `agents.evaluated.Asked`; wings are read once."""
+    from agents.evaluated import Asked
+    from flapenv.files import read_wing
+
+    if options.wing and options.insects:
+        raise ValueError("--wing and --insects ask for two sets of wings; allowed: one of them")
+    return Asked(
+        insects=options.insects,
+        wings=[read_wing(file) for file in options.wing],
+        problem=options.problem,
+        pool_seed=options.pool_seed,
+        noise=options.noise,
+        robustness=options.robustness,
+        costs=options.costs,
+    )
+
+
+def _folders(subjects: list[str], out: Path | None) -> list[Path | None]:
+    """A folder for what is kept of each before anything is judged; None where nothing is to be kept.
 
     Raises:
-        ValueError: for two policies of one name.
+        ValueError: for two of one name.
         OSError: for a folder that cannot be used.
     """
     from agents.run_folder import open_run_folder
 
     if out is None:
-        return [None] * len(policies)
-    paths = [Path(policy) for policy in policies]
-    names = [path.parent.name if path.suffix == ".safetensors" else path.name for path in paths]
+        return [None] * len(subjects)
+    names = [_folder_name(Path(subject)) for subject in subjects]
     for name in names:
         if names.count(name) > 1:
-            raise ValueError(f"{names.count(name)} policies are called {name!r}; allowed with --out: each name once")
+            raise ValueError(f"{names.count(name)} subjects are called {name!r}; allowed with --out: each name once")
     return [open_run_folder(out / name, "") for name in names]
 
 
-def evaluated(policy: str, options: argparse.Namespace, kept: Path | None) -> str:
-    """One policy's verdict as text; files in the folder given.
+def _folder_name(subject: Path) -> str:
+    """What the folder of a subject is called."""
+    if subject.suffix == ".safetensors":
+        return subject.parent.name
+    return subject.stem if subject.suffix in (".json", ".csv") else subject.name
+
+
+def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
+    """One verdict as text; files in the folder given.
 
     Raises:
-        ValueError: for an unknown policy or one that does not fit what it is asked for.
-        TypeError: for arguments that its task does not have.
-        OSError: for files that cannot be read or written.
+        ValueError: as `agents.evaluated.evaluated`, like the others.
     """
-    from agents.noisy_actuators import NoisyActuators
-    from agents.policy_file import load_policy
+    from agents.assessment_table import ranking_table
+    from agents.evaluated import evaluated
+
+    found = evaluated(subject, asked)
+    assessments = found.verdict.assessments
+    parts = [f"{found.title}\n{found.verdict.text}"]
+    if any(one.rankings and one.stroke != one.insect.stroke for one in assessments):
+        parts.append(ranking_table(assessments))
+    parts += found.told
+    if kept is not None:
+        _keep(found, kept, command)
+        parts.append(f"kept in {kept}")
+    return "\n\n".join(parts) + "\n"
+
+
+def _keep(found: Any, kept: Path, command: str) -> None:
+    """Write results.json and the picture."""
     from agents.run_folder import RESULT_PICTURE, RESULTS, versions, write_json
 
-    actor, card = load_policy(policy)
-    task = _task(card.task, {"insects": options.insects, "problem": options.problem, "pool_seed": options.pool_seed})
-    if card.environment != task.environment:
-        raise ValueError(f"the card of {policy} says {card.environment}, its task flies {task.environment}")
-    card.require_fit(task.vector_env(1))
-    flown = NoisyActuators(actor, options.noise) if options.noise else actor
-    verdict = task.judge(flown)
-    title = f"{policy}: {card.algorithm} on {card.environment}, {card.wingbeats:,} wingbeats, seed {card.seed}"
-    text, results = f"{title}\n{verdict.text}", dict(verdict.results)
-    if options.robustness:
-        shaken, told = _robustness(actor, task)
-        text, results = f"{text}\n\n{told}", {**results, "robustness": shaken}
-    if options.costs:
-        costs, told = _costs(actor, task, card.wingbeats)
-        text, results = f"{text}\n\n{told}", {**results, "costs": costs}
-    if kept is not None:
-        scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": task.distance}
-        about = {"policy": Path(policy).name, "sha256": card.sha256, "noise": options.noise, "verdict": scores}
-        write_json(kept / RESULTS, {**about, **results, "versions": versions()})
-        task.draw(flown).savefig(kept / RESULT_PICTURE)
-        text += f"\nkept in {kept}"
-    return text + "\n"
-
-
-def _task(described: Mapping[str, Any], asked: Mapping[str, Any]) -> Any:
-    """The task of a card with other arguments where they are asked for."""
-    from agents.presets import Preset
-    from agents.tasks import TASKS
-    from flapenv.aero.checks import require_name
-
-    own = {name: value for name, value in described.items() if name != "name"}
-    own |= {name: value for name, value in asked.items() if value is not None}
-    name = require_name("task", described.get("name"), TASKS)
-    if name == "random-wings" and own.get("insects"):  # a policy for every wing flies named ones, too
-        name, own = "hover", {key: own[key] for key in ("insects", "problem") if key in own}
-    return Preset(task=name, arguments=own, settings=None).make_task()
-
-
-def _robustness(actor: Any, task: Any) -> tuple[dict[str, Any], str]:
-    """Noise and other models, of policies of named insects in Hover."""
-    from agents.robustness import robustness
-    from agents.tasks import HoverTask
-
-    if not isinstance(task, HoverTask):
-        raise ValueError(f"--robustness is not told of {task.environment} here; allowed: policies of named insects")
-    return robustness(actor, task.insects, task.problem)
-
-
-def _costs(actor: Any, task: Any, wingbeats: int) -> tuple[Any, str]:
-    """What a new wing costs, of policies for random wings."""
-    from agents.tasks import RandomWingsTask
-    from agents.wing_costs import costs_of
-
-    if not isinstance(task, RandomWingsTask):
-        raise ValueError(f"--costs are not told of {task.environment} with named insects; allowed: random wings")
-    return costs_of(actor, task.problem, wingbeats)
+    verdict = found.verdict
+    scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": found.about["distance"]}
+    about = {name: value for name, value in found.about.items() if name != "distance"}
+    write_json(kept / RESULTS, {**about, "verdict": scores, **verdict.results, "versions": versions()})
+    found.draw().savefig(kept / RESULT_PICTURE)
 
 
 def shipped_table() -> str:

@@ -2,10 +2,8 @@
 
 import dataclasses
 import hashlib
-import json
 import os
 from pathlib import Path
-from typing import Any
 
 from safetensors import SafetensorError
 from safetensors.numpy import load as load_tensors
@@ -16,6 +14,7 @@ from agents.policy_card import PolicyCard
 from agents.recurrent_actor import AnyActor, RecurrentActor
 from agents.run_folder import POLICY_TENSORS, write_atomically, write_json
 from flapenv.aero.checks import allowed
+from flapenv.read_json import read_object
 
 SHIPPED = Path(__file__).parent / "policies"
 """Where the repository's own policies lie."""
@@ -127,21 +126,11 @@ def _read_card(path: Path) -> PolicyCard:
     """The card in a file."""
     if not path.is_file():
         raise FileNotFoundError(f"{path} does not exist; allowed: a card beside every file of weights")
-    try:
-        content = json.loads(_read(path).decode("utf-8"), parse_constant=_refuse_constant)
-    except RecursionError:
-        raise ValueError(f"{path} is nested too deep; allowed: a card as `save_policy` wrote it") from None
-    except ValueError as problem:
-        raise ValueError(f"{path} is not JSON: {problem}; allowed: a card as `save_policy` wrote it") from None
+    content = read_object(path, mend="a card as `save_policy` wrote it", largest=LARGEST)
     try:
         return PolicyCard.from_dict(content)
     except (TypeError, ValueError) as problem:
         raise ValueError(f"{path}: {problem}") from None
-
-
-def _refuse_constant(name: str) -> Any:
-    """NaN and infinity are not JSON, but Python reads them."""
-    raise ValueError(f"{name} is not a number")
 
 
 def _read(path: Path) -> bytes:

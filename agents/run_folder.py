@@ -8,6 +8,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from flapenv.whole_file import whole_file
+
 CONFIG, RESULTS, POLICY, CURVE = "config.json", "results.json", "policy.zip", "curve.csv"
 POLICY_TENSORS, POLICY_CARD = "policy.safetensors", "policy.json"
 CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD = "learning_curve.png", "learned.png", "tensorboard"
@@ -45,12 +47,8 @@ def open_run_folder(out: Path | None, name: str) -> Path:
 
 def write_atomically(path: Path, write: Callable[[Path], object]) -> None:
     """Let `write` fill a file beside `path`, then put it in place in one step."""
-    beside = path.with_name(f".{path.stem}.part{path.suffix}")
-    try:
+    with whole_file(path) as beside:
         write(beside)
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
 
 
 def write_json(path: Path, content: dict[str, Any]) -> None:

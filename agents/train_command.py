@@ -1,7 +1,6 @@
 """`python train.py`: train one policy by a preset."""
 
 import argparse
-import json
 import shlex
 import sys
 from pathlib import Path
@@ -31,11 +30,13 @@ def parser() -> argparse.ArgumentParser:
             "  python train.py                              all eight insects, seed 0, into runs/hover-ppo-seed0/\n"
             "  python train.py --seed 1 --out runs/second   another seed, a folder of your own\n"
             "  python train.py --insects hawkmoth fruitfly --wingbeats 500000\n"
+            "  python train.py --wing docs/examples/robot.json   your own wing, within its limits\n"
             "  python train.py --preset random-wings-ppo    one policy for every wing; see --list\n"
             "  python train.py --set rows=4096 --set learning_rate=0.001\n\n"
             "other commands, each with its own --help:\n"
             "  python train.py evaluate hover               a shipped policy, or a run's, judged again\n"
             "  python train.py benchmark                    every learner and every task, five seeds each\n"
+            "  python train.py optimum hawkmoth             the best stroke and its proven bound, without learning\n"
             "  python train.py compare                      optimisers on the same strokes, with equal budgets\n\n"
             "a run folder holds config.json, results.json, the policy (policy.safetensors with its card policy.json,\n"
             "and Stable-Baselines3's policy.zip), curve.csv, TensorBoard logs and two pictures; Ctrl-C stops early,\n"
@@ -56,6 +57,9 @@ def parser() -> argparse.ArgumentParser:
     )
     made.add_argument(
         "--insects", nargs="+", metavar="NAME", help=f"of {', '.join(INSECTS)} (default all); of tasks that name them"
+    )
+    made.add_argument(
+        "--wing", type=folder, action="append", metavar="FILE", help="your own wing, in place of --insects; repeatable"
     )
     made.add_argument(
         "--problem", metavar="NAME", help=f"of {', '.join(PROBLEMS)} (default the first); of tasks that have one"
@@ -98,12 +102,13 @@ def what_counts(arguments: list[str]) -> list[str]:
     """The arguments that a run depends on: not where it is kept, nor whether it shows a bar."""
     kept, rest = [], iter(arguments)
     for one in rest:
+        name, _, value = one.partition("=")
         if one == "--out":
             next(rest, None)
-        elif one == "--config":
+        elif one in ("--config", "--wing"):
             kept += [one, Path(next(rest, "")).name]  # not where on this machine it lies
-        elif one.startswith("--config="):
-            kept.append(f"--config={Path(one.partition('=')[2]).name}")
+        elif name in ("--config", "--wing"):
+            kept.append(f"{name}={Path(value).name}")
         elif one != "--quiet" and not one.startswith("--out="):
             kept.append(one)
     return kept
@@ -134,11 +139,39 @@ def config_of(options: argparse.Namespace, command: str) -> Any:
     preset = as_preset(chosen)
     own = {"insects": options.insects, "problem": options.problem, "leave_out": options.leave_out}
     task = {key: value for key, value in own.items() if value is not None}
+    if options.wing is not None:
+        task |= own_wings(options, preset)
     settings = dict(setting_of(text) for text in options.settings)
     if options.wingbeats is not None:
         settings["wingbeats"] = options.wingbeats
     seed = seed if options.seed is None else options.seed
     return TrainingConfig(preset=preset.changed(task, settings), name=name, seed=seed, command=command)
+
+
+def own_wings(options: argparse.Namespace, preset: Any) -> dict[str, Any]:
+    """Insects and problem of the hover task for the wings in files, within their limits.
+
+    Raises:
+        ValueError: beside --insects, for another task, or for wings whose limits differ.
+        TypeError: for files with values of another kind.
+        OSError: for files that cannot be read.
+    """
+    from flapenv.files import read_wing
+    from flapenv.problem import as_problem
+
+    if options.insects is not None:
+        raise ValueError("--insects and --wing both say what flies; allowed: one of them")
+    if preset.task != "hover":
+        raise ValueError(f"--wing is not told of task {preset.task!r}; allowed: 'hover', see --list")
+    base = as_problem(preset.arguments.get("problem") if options.problem is None else options.problem)
+    files = [read_wing(path) for path in options.wing]
+    problems = [one.problem(base) for one in files]
+    for path, problem in zip(options.wing, problems, strict=True):
+        if problem != problems[0]:
+            raise ValueError(
+                f"--wing {path} has other limits than {options.wing[0]}; allowed: equal ones, as one policy has one box"
+            )
+    return {"insects": [one.insect for one in files], "problem": problems[0]}
 
 
 def hover_learners() -> dict[str, str]:
@@ -158,15 +191,9 @@ def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
         OSError: if the file cannot be read.
     """
     from agents.presets import as_preset
+    from flapenv.read_json import read_object
 
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except UnicodeDecodeError as mistake:
-        raise ValueError(f"--config {path} is not text: {mistake}") from None
-    except (ValueError, RecursionError) as mistake:
-        raise ValueError(f"--config {path} is not JSON that can be read: {mistake}") from None
-    if not isinstance(content, dict):
-        raise TypeError(f"--config {path} holds no object; allowed: a config.json as a run writes it")
+    content = read_object(path, called=f"--config {path}", mend="a config.json as a run writes it")
     for key in content:
         if key not in CONFIG_KEYS:
             raise TypeError(f"--config {path} has an unknown key {key!r}; {allowed(key, CONFIG_KEYS)}")

@@ -10,6 +10,7 @@ from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.animation.film import animate
 from flapenv.envs.registration import register_envs
+from flapenv.files import NamedStroke, WingFile, read_strokes, read_wing, strokes_to_text, write_strokes, write_wing
 from flapenv.insects import INSECTS, ForceConstants, HoverReference, Insect, WingFactors, load_insect
 from flapenv.model import COEFFICIENTS, HoverModel
 from flapenv.optimum import Optimum, optimum
@@ -29,6 +30,7 @@ __all__ = [
     "HoverProblem",
     "HoverReference",
     "Insect",
+    "NamedStroke",
     "Optimum",
     "SampledMotion",
     "Stroke",
@@ -36,13 +38,19 @@ __all__ = [
     "TabulatedPlanform",
     "Wing",
     "WingFactors",
+    "WingFile",
     "__version__",
     "animate",
     "evaluate",
     "load_insect",
     "optimum",
+    "read_strokes",
+    "read_wing",
     "register_envs",
     "simulate",
+    "strokes_to_text",
+    "write_strokes",
+    "write_wing",
 ]
 
 register_envs()

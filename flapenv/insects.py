@@ -243,6 +243,16 @@ def as_insect(value: Any) -> Insect:
     raise TypeError(f"insect = {value!r} is not allowed; allowed: an Insect, a dict of its fields or a name")
 
 
+def described(insect: Insect) -> str | dict[str, Any]:
+    """An insect for a file: its name where it is one of `INSECTS`, else all its numbers; `as_insect` gives it back.
+
+    Raises:
+        TypeError: for an insect that no file can hold.
+    """
+    named = insect.name in INSECTS and insect == load_insect(insect.name)
+    return insect.name if named else insect.to_dict()
+
+
 def pick(insects: Insect, number: int) -> Insect:
     """One of the insects that array fields hold, with scalar fields, called by its number.
 

@@ -11,6 +11,7 @@ from flapenv.aero.arrays import as_arrays, as_like
 from flapenv.aero.checks import record
 from flapenv.case import HoverCase
 from flapenv.insects import Insect
+from flapenv.optimum import gap_charge
 from flapenv.performance import hover_averages
 from flapenv.problem import HoverProblem
 from flapenv.references import Flyers, GapTo
@@ -19,8 +20,6 @@ LEAST_PENALTY = 3.0
 """λ "auto" is at least this, so that an agent that explores feels missing lift."""
 INFEASIBLE_PENALTY = 10.0
 """λ where no stroke carries the weight and the aim is the largest weight support."""
-LEAST_GAP_WEIGHT = 10.0
-"""The gap charges missing weight support at least this many times its fraction."""
 QUADRATURE_TOLERANCE = 1e-5
 """Of the averages an environment computes; in the default box they are ten times better, near single precision."""
 
@@ -130,13 +129,12 @@ class HoverObjective:
         feasible, bound = references.feasible, references.power
         best_power = np.where(np.isfinite(references.best_power), references.best_power, bound)
         self.lift_penalty = self._lift_penalty(feasible, references.multiplier / bound)
-        charge = np.where(np.isfinite(references.multiplier), references.multiplier, 0.0)
-        self.gap_charge = np.maximum(LEAST_GAP_WEIGHT, 2 * charge / best_power)
+        self.gap_charge = gap_charge(references.multiplier, best_power)
         reference = {
             "bound": bound,
             "optimum": np.where(feasible, best_power, bound),
             "penalty": self.lift_penalty,
-            "bound_charge": np.maximum(LEAST_GAP_WEIGHT, 2 * charge / bound),
+            "bound_charge": gap_charge(references.multiplier, bound),
             "charge": self.gap_charge,
         }
         self.reference = {name: value.astype(self.dtype) for name, value in reference.items()}
@@ -225,14 +223,6 @@ class HoverObjective:
             has_gap=has_gap,
             has_bound=np.full(len(has_gap), self.problem.model.has_proven_bound),
         )
-
-    def gap(self, number: int, weight_support: float, specific_power: float) -> float | None:
-        """The gap of one evaluated stroke of insect `number` to its optimum [-]; None where it is infeasible."""
-        best = self.flyers.optima[number]
-        if not best.feasible:
-            return None
-        deficit = max(0.0, 1 - weight_support)
-        return specific_power / best.specific_power - 1 + float(self.gap_charge[number]) * deficit
 
 
 def _few(numbers: np.ndarray) -> list[int]:

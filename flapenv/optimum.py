@@ -26,6 +26,8 @@ ORACLE_TOLERANCE = 1e-5
 """Relative difference up to which the refined oracle confirms an optimum."""
 NEXT_TO_NOTHING = 1e-4
 """Lift and power that are not compared digit for digit, over the yardstick stroke's."""
+LEAST_GAP_CHARGE = 10.0
+"""The gap charges missing weight support at least this many times its fraction."""
 ROUGH_TOLERANCE = 2e-4
 """The same for coefficients that jump or have corners, and for power that is only paid where positive."""
 
@@ -75,10 +77,33 @@ class Optimum:
         """P* over the lower bound, minus one [-]; None where no bound is proven."""
         return None if self.lower_bound is None else self.specific_power / self.lower_bound - 1
 
+    def gap(self, weight_support: float, specific_power: float) -> float | None:
+        """How far another stroke is off [-]: P*/P*_opt - 1 + c max(0, 1-Λ); None where the optimum is infeasible.
+
+        Args:
+            weight_support: Λ of the stroke [-].
+            specific_power: P* of the stroke [W/kg].
+        """
+        if not self.feasible:
+            return None
+        charge = float(gap_charge(self.multiplier, self.specific_power))
+        return specific_power / self.specific_power - 1 + charge * max(0.0, 1 - weight_support)
+
     @property
     def reference_power(self) -> float:
         """What powers are measured in: the proven bound, or P* of the stroke where none is proven [W/kg]."""
         return self.specific_power if self.lower_bound is None else self.lower_bound
+
+
+def gap_charge(multiplier: np.ndarray | float, power: np.ndarray | float) -> np.ndarray:
+    """C = max(10, 2 multiplier/power), what a gap charges for missing weight support, so that dropping never pays [-].
+
+    Args:
+        multiplier: dP*/dΛ of the optimum [W/kg]; one that is infinite, at the limit of lift, counts as 0.
+        power: what the gap is measured in [W/kg].
+    """
+    finite = np.where(np.isfinite(multiplier), multiplier, 0.0)
+    return np.maximum(LEAST_GAP_CHARGE, 2 * finite / power)
 
 
 def lower_bound(case: HoverCase, problem: HoverProblem) -> np.ndarray | float | None:

@@ -17,7 +17,7 @@ def problem_table(name: str) -> str:
     for insect in INSECTS:
         if PROBLEMS[name].model.accounting == "positive" and load_insect(insect).wing.mass is None:
             continue
-        rows.append((insect, *_cells(optimum(insect, name))))
+        rows.append((insect, *cells(optimum(insect, name))))
     return text_table(rows)
 
 
@@ -44,7 +44,7 @@ def springs_table() -> str:
     return text_table(rows)
 
 
-def _cells(best: Optimum) -> tuple[str, ...]:
+def cells(best: Optimum) -> tuple[str, ...]:
     """One row: power and bound, margin, stroke, multiplier."""
     stroke, bound = best.stroke, best.lower_bound
     return (

@@ -20,9 +20,9 @@ from flapenv.aero.axes import LEFT, RIGHT
 from flapenv.aero.inertia import wing_inertia
 from flapenv.animation import film
 from flapenv.animation.beat import DrawnBeat, drawn_beat
-from flapenv.animation.files import whole_file
 from flapenv.animation.panels import SectionPanel, arrow_outline
 from flapenv.animation.sheet import MovingSheet
+from flapenv.whole_file import whole_file
 
 HAWKMOTH = load_insect("hawkmoth")
 BEST = optimum(HAWKMOTH).stroke

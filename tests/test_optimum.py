@@ -283,3 +283,11 @@ def test_what_is_not_one_insect_is_refused() -> None:
         optimum("moth")
     with pytest.raises(TypeError, match="problem = 3"):
         optimum("hawkmoth", 3)
+
+
+def test_the_gap_charges_missing_weight_ten_times() -> None:
+    best = optimum("hawkmoth")
+    assert best.gap(1.0, 1.1 * best.specific_power) == pytest.approx(0.1)
+    assert best.gap(0.99, best.specific_power) == pytest.approx(0.1)
+    assert best.gap(1.5, best.specific_power) == pytest.approx(0)
+    assert optimum("hawkmoth", HoverProblem(box={"frequency_ratio": (0.1, 0.2)})).gap(0.5, 10.0) is None

@@ -10,9 +10,9 @@ from typing import Any, TypeVar, get_type_hints
 import numpy as np
 
 from agents.benchmark.statistics import first_below
-from agents.read_json import read_object
 from agents.run_folder import CURVE, RESULTS, write_atomically
 from flapenv.aero.checks import record, require_scalar
+from flapenv.read_json import read_object
 
 RUNS_TABLE, INSECTS_TABLE, CURVES_TABLE = "runs.csv", "insects.csv", "curves.csv"
 THRESHOLDS = (0.05, 0.01, 0.001)

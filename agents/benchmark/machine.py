@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from agents.read_json import read_object
 from agents.run_folder import versions, write_json
+from flapenv.read_json import read_object
 
 MACHINE = "machine.json"
 CPU_TABLE = Path("/proc/cpuinfo")

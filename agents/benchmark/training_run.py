@@ -9,9 +9,9 @@ from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from agents.read_json import read_object
 from agents.run_folder import CONFIG, RESULTS
 from flapenv.aero.checks import record
+from flapenv.read_json import read_object
 
 if TYPE_CHECKING:
     from agents.presets import Preset

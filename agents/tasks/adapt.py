@@ -9,14 +9,13 @@ import numpy as np
 from agents.intervals import mean_with_interval
 from agents.predictor import Predictor
 from agents.tasks.adapt_flights import Flown
-from agents.tasks.described import described
 from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
 from flapenv.adapt.tuning import NAMES
 from flapenv.aero.checks import record
 from flapenv.envs.hover_adapt import HoverAdaptVectorEnv
 from flapenv.envs.insect_choice import listed_insects
-from flapenv.insects import Insect
+from flapenv.insects import Insect, described
 from flapenv.tables import text_table
 
 if TYPE_CHECKING:

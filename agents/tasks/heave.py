@@ -11,13 +11,12 @@ from agents.intervals import mean_with_interval
 from agents.lqg import RATIOS
 from agents.lqg_controller import OneEach, lqg
 from agents.predictor import Predictor
-from agents.tasks.described import described
 from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs.heave import HeaveVectorEnv
 from flapenv.envs.insect_choice import listed_insects
-from flapenv.insects import Insect
+from flapenv.insects import Insect, described
 from flapenv.tables import text_table
 
 if TYPE_CHECKING:

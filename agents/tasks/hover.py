@@ -5,13 +5,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.comparison import Comparison, comparison_table, mean_gap, worst_gap
+from agents.comparison import Comparison
 from agents.predictor import Predictor
-from agents.tasks.described import described
+from agents.tasks.stroke_verdict import verdict_of
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.insect_choice import listed_insects
+from flapenv.insects import described
 from flapenv.problem import as_problem
 
 if TYPE_CHECKING:
@@ -60,19 +61,7 @@ class HoverTask:
 
     def judge(self, policy: Predictor) -> Verdict:
         """Every insect's learned stroke beside its references."""
-        results = self.comparison.results(policy)
-        mean, worst = mean_gap(results), worst_gap(results)
-        return Verdict(
-            mean=mean,
-            worst=worst,
-            text=comparison_table(results),
-            results={
-                "problem": self.problem.to_dict(),
-                "insects": {one.insect.name: one.to_dict() for one in results},
-                "mean_gap_percent": None if mean is None else 100 * mean,
-                "infeasible": [one.insect.name for one in results if not one.best.feasible],
-            },
-        )
+        return verdict_of(self.comparison.results(policy), self.problem)
 
     def draw(self, policy: Predictor) -> "Figure":
         """The learned over the optimal strokes."""

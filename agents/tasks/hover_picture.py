@@ -6,15 +6,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.comparison import InsectResult
+from agents.assessment_table import LEARNED
+from flapenv.assessment import StrokeAssessment
 from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw_strokes(results: Sequence[InsectResult]) -> "Figure":
-    """Flapping and pitching angle over the cycle, learned against optimal, one panel an insect."""
+def draw_strokes(results: Sequence[StrokeAssessment], called: str = LEARNED) -> "Figure":
+    """Flapping and pitching angle over the cycle, over those of the optimum, one panel an insect.
+
+    Args:
+        results: one an insect.
+        called: what the strokes are, in a word.
+    """
     require_matplotlib()
     from matplotlib.figure import Figure
 
@@ -37,5 +43,5 @@ def draw_strokes(results: Sequence[InsectResult]) -> "Figure":
         axes.set_xlabel("t/T")
     for axes in grid[:, 0]:
         axes.set_ylabel("angle [°]")
-    figure.suptitle("flapping φ (blue) and pitching θ (orange): learned thin, optimal broad", fontsize=11)
+    figure.suptitle(f"flapping φ (blue) and pitching θ (orange): {called} thin, optimal broad", fontsize=11)
     return figure

@@ -3,14 +3,14 @@
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from agents.comparison import Comparison, comparison_table
+from agents.assessment_table import assessment_table
+from agents.comparison import Comparison
 from agents.predictor import Predictor
-from agents.tasks.described import described
 from agents.tasks.task import Verdict
 from agents.tasks.wing_flights import WingFlights, WingPool
 from flapenv.aero.checks import record, require_count
 from flapenv.envs import HoverVectorEnv
-from flapenv.insects import INSECTS, as_insect, load_insect
+from flapenv.insects import INSECTS, as_insect, described, load_insect
 from flapenv.problem import as_problem
 from flapenv.tables import text_table
 
@@ -93,12 +93,13 @@ class RandomWingsTask:
         return Verdict(
             mean=test.mean,
             worst=test.most,
-            text=f"{wings_table(flown)}\n\n{which}:\n{comparison_table(insects)}",
+            text=f"{wings_table(flown)}\n\n{which}:\n{assessment_table(insects)}",
             results={
                 "problem": self.problem.to_dict(),
                 "wings": {split: flights.to_dict() for split, flights in flown.items()},
                 "insects": {one.insect.name: one.to_dict() for one in insects},
             },
+            assessments=tuple(insects),
         )
 
     def draw(self, policy: Predictor) -> "Figure":

@@ -6,6 +6,7 @@ from gymnasium.vector import VectorEnv
 
 from agents.predictor import Predictor
 from flapenv.aero.checks import record
+from flapenv.assessment import StrokeAssessment
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,12 +22,14 @@ class Verdict:
         worst: the same where it is largest: of the insects, or the 95th percentile of many wings.
         text: the table that people read.
         results: the task's part of results.json; plain numbers, strings, lists and dicts, None for what is not known.
+        assessments: of the strokes of single insects, where there are any.
     """
 
     mean: float | None
     worst: float | None
     text: str
     results: dict[str, Any]
+    assessments: tuple[StrokeAssessment, ...] = ()
 
 
 class Task(Protocol):

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.predictor import Predictor, begin
-from agents.tasks.described import described
 from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record, require_count
 from flapenv.aero.spline_motion import SplineMotion
 from flapenv.envs.insect_choice import listed_insects
 from flapenv.envs.waveform import DEFAULT_KNOTS, WaveformVectorEnv
-from flapenv.insects import Insect
+from flapenv.insects import Insect, described
 from flapenv.problem import HoverProblem, as_problem
 from flapenv.tables import text_table
 from flapenv.waveform.shipped import KnownOptimum

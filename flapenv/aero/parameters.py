@@ -4,7 +4,13 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
+
+from flapenv.aero.arrays import as_numpy
 from flapenv.aero.checks import require_real
+
+CLEARLY = 1.1
+"""How far over its range an angle must be for degrees to be guessed: 3.15 is a rounded π."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,9 +48,21 @@ class StrokeParameter:
 
         Raises:
             TypeError: if it is not real.
-            ValueError: if it is outside, NaN or infinite.
+            ValueError: if it is outside, NaN or infinite; an angle that looks like degrees is told in radians.
         """
-        return require_real(field or self.name, value, self.low, self.high, open_low=self.open_low, unit=self.unit)
+        try:
+            return require_real(field or self.name, value, self.low, self.high, open_low=self.open_low, unit=self.unit)
+        except ValueError as mistake:
+            raise ValueError(f"{mistake}{self._guess(as_numpy(value))}") from None
+
+    def _guess(self, values: np.ndarray) -> str:
+        """What was meant by the first angle outside of the range, if it would lie within in degrees."""
+        if self.unit == "rad":
+            for value in np.ravel(values):
+                too_large = abs(value) > CLEARLY * self.high
+                if too_large and self.low <= math.radians(value) <= self.high:
+                    return f"; {value:.6g} looks like degrees: {math.radians(value):.5g} rad"
+        return ""
 
 
 class StrokeReference(NamedTuple):

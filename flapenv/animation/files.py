@@ -1,10 +1,9 @@
-"""Frames into a GIF or an MP4 file, whole or not at all."""
+"""Frames into a GIF or an MP4 file."""
 
 import contextlib
 import importlib.util
 import os
-import uuid
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -39,25 +38,6 @@ def checked_path(path: str | os.PathLike[str]) -> Path:
     if found.is_dir():
         raise IsADirectoryError(f"path = {str(path)!r} is a folder; allowed: a file")
     return found
-
-
-@contextlib.contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
-    """A file beside `path` to write into, which takes its place in one step, or is removed if anything goes wrong.
-
-    Raises:
-        OSError: if the folder cannot be written.
-    """
-    beside = path.with_name(f".{path.stem}.{uuid.uuid4().hex[:8]}{path.suffix}")
-    try:
-        beside.touch()
-    except OSError as error:
-        raise type(error)(f"path = {str(path)!r} cannot be written ({error}); allowed: a folder that can") from error
-    try:
-        yield beside
-        beside.replace(path)
-    finally:
-        beside.unlink(missing_ok=True)
 
 
 def _palette() -> list[int]:

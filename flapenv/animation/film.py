@@ -8,11 +8,12 @@ from typing import Any
 from flapenv.aero.checks import require_count, require_flag, require_scalar
 from flapenv.aero.motions import Motion
 from flapenv.animation.beat import drawn_beat
-from flapenv.animation.files import WRITERS, checked_path, whole_file
+from flapenv.animation.files import WRITERS, checked_path
 from flapenv.animation.sheet import WIDTH, MovingSheet
 from flapenv.drawing import require_matplotlib
 from flapenv.insects import Insect, as_insect
 from flapenv.model import HoverModel, as_model
+from flapenv.whole_file import whole_file
 
 FRAMES, FRAMES_PER_SECOND = 60, 25.0
 """A wingbeat that one can follow, 2.4 s long."""

@@ -22,7 +22,8 @@ from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_in
 from flapenv.envs.last_beat import LastBeat
 from flapenv.envs.single import SingleEnv
 from flapenv.envs.wing_features import OBSERVATION_LIMIT, wing_features
-from flapenv.objective import LEAST_GAP_WEIGHT, QUADRATURE_TOLERANCE
+from flapenv.objective import QUADRATURE_TOLERANCE
+from flapenv.optimum import gap_charge
 from flapenv.performance import hover_averages
 
 MEMORY = 4
@@ -228,7 +229,7 @@ class HoverAdaptVectorEnv(BatchEnv):
 
     def _gap(self, weight_support: np.ndarray, specific_power: np.ndarray) -> np.ndarray:
         """P* over the present condition's optimum, minus one, plus the charge for missing lift [-]."""
-        charge = np.maximum(LEAST_GAP_WEIGHT, 2 * self._now.multiplier / self._now.best_power)
+        charge = gap_charge(self._now.multiplier, self._now.best_power)
         gap: np.ndarray = specific_power / self._now.best_power - 1 + charge * np.maximum(0, 1 - weight_support)
         return gap
 

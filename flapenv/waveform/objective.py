@@ -8,8 +8,8 @@ import numpy as np
 
 from flapenv.case import hover_case, stack_cases
 from flapenv.insects import Insect
-from flapenv.objective import INFEASIBLE_PENALTY, LEAST_GAP_WEIGHT, LEAST_PENALTY, penalised
-from flapenv.optimum import lower_bound
+from flapenv.objective import INFEASIBLE_PENALTY, LEAST_PENALTY, penalised
+from flapenv.optimum import gap_charge, lower_bound
 from flapenv.problem import HoverProblem
 from flapenv.waveform.coordinates import Waveform, WaveformCoordinates
 from flapenv.waveform.largest_lift import largest_weight_support
@@ -91,8 +91,8 @@ class WaveformObjective:
             "bound": self.bound,
             "optimum": power,
             "penalty": self.lift_penalty,
-            "bound_charge": np.maximum(LEAST_GAP_WEIGHT, 2 * multiplier / self.bound),
-            "charge": np.maximum(LEAST_GAP_WEIGHT, 2 * multiplier / power),
+            "bound_charge": gap_charge(multiplier, self.bound),
+            "charge": gap_charge(multiplier, power),
         }
         self._reference = {name: value.astype(self.dtype) for name, value in reference.items()}
         self._is_known = known

@@ -109,3 +109,40 @@ def test_replace_validates_again() -> None:
         dataclasses.replace(HOVER, flap_amplitude=4.0)
     with pytest.raises(TypeError, match="Stroke has no field 'amplitude'"):
         Stroke(frequency=1.0, amplitude=1.0, pitch_amplitude=1.0)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "said"),
+    [
+        ("flap_amplitude", 60, "flap_amplitude = 60 is not allowed; .*; 60 looks like degrees: 1.0472 rad$"),
+        ("flap_amplitude", 180, "180 looks like degrees: 3.1416 rad$"),
+        ("pitch_amplitude", 45.0, "45 looks like degrees: 0.7854 rad$"),
+        ("pitch_phase", 90, "90 looks like degrees: 1.5708 rad$"),
+        ("pitch_phase", -90, "-90 looks like degrees: -1.5708 rad$"),
+        ("flap_amplitude", np.array([1.0, 60.0, 70.0]), r"flap_amplitude\[1\] = 60 .*; 60 looks like degrees: 1.0472"),
+    ],
+)
+def test_degrees_where_radians_are_due_are_told(field: str, value: object, said: str) -> None:
+    numbers = {"frequency": 26.3, "flap_amplitude": 1.0, "pitch_amplitude": 1.0}
+    with pytest.raises(ValueError, match=said):
+        Stroke(**{**numbers, field: value})
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("flap_amplitude", 3.15),
+        ("flap_amplitude", -60),
+        ("flap_amplitude", 200),
+        ("pitch_amplitude", 100),
+        ("pitch_phase", 400),
+        ("pitch_phase", math.nan),
+        ("frequency", -60),
+        ("flap_shape", 60),
+    ],
+)
+def test_nothing_is_guessed_of_numbers_that_are_wrong_in_degrees_too(field: str, value: float) -> None:
+    numbers = {"frequency": 26.3, "flap_amplitude": 1.0, "pitch_amplitude": 1.0}
+    with pytest.raises(ValueError, match="is not allowed; allowed: finite, in") as caught:
+        Stroke(**{**numbers, field: value})
+    assert "degrees" not in str(caught.value)

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from agents.comparison import Comparison, comparison_table, mean_gap
+from agents.assessment_table import assessment_table
+from agents.comparison import Comparison, mean_gap
 from flapenv import INSECTS, HoverProblem, evaluate, load_insect, optimum
 from flapenv.coordinates import StrokeCoordinates
 
@@ -42,7 +43,7 @@ def test_the_optimal_actions_have_no_gap_and_the_table_shows_every_reference() -
         assert entry["own_stroke_specific_power"] == evaluate(result.insect).specific_power
         assert entry["cfd_specific_power"] == result.insect.cfd.specific_power
         assert set(entry["stroke"]) == set(vars(result.stroke))
-    table = comparison_table(results)
+    table = assessment_table(results)
     for name in INSECTS:
         assert name in table
     assert "worst 0.0" in table
@@ -70,4 +71,4 @@ def test_an_infeasible_insect_is_named_and_left_out_of_the_mean() -> None:
     assert entry["lift_shortfall"] > 0
     assert mean_gap(results) == results[1].gap
     assert mean_gap(results[:1]) is None
-    assert "ladybird is INFEASIBLE: no stroke of the box supports more than 0." in comparison_table(results)
+    assert "ladybird is INFEASIBLE: no stroke of the box supports more than 0." in assessment_table(results)

@@ -94,6 +94,7 @@ def test_bad_input_is_one_line_and_nothing_is_unpickled(
         ((hover, "--problem", "free"), "'free' is unknown"),
         ((hover, "--insects", "hawkmoth", "--problem", "fixed-frequency"), "do not fit"),
         ((hover, "--costs"), "allowed: random wings"),
+        ((hover, "--wing", tmp_path / "none.json"), "none.json"),
         ((hover, "--noise", "-1"), "share = -1"),
         ((wings, "--robustness"), "allowed: policies of named insects"),
     ):

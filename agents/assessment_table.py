@@ -1,0 +1,134 @@
+"""Assessed strokes as people read them: the table, what other models say, and what lies outside the validated range."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from flapenv.assessment import StrokeAssessment
+from flapenv.assessment.validity import Quantity
+from flapenv.tables import text_table
+
+LEARNED = "learned"
+"""What the strokes of a policy are called."""
+
+
+def assessment_table(results: Sequence[StrokeAssessment], called: str = LEARNED) -> str:
+    """Each stroke beside optimum, bound, CFD and the insect's own stroke, and below it what the columns mean.
+
+    Args:
+        results: one an insect.
+        called: what the strokes are, in a word.
+    """
+    rows: list[tuple[str, ...]] = [
+        (
+            *("insect", "weight", called, "", "optimum", "bound", "gap"),
+            *("own stroke:", "CFD", "model", "weight", "saved of", "CFD", "", "model"),
+        ),
+        ("", "support", "W/kg", "±", "W/kg", "W/kg", "%", "", "W/kg", "W/kg", "support", "", "%", "±", "%"),
+    ]
+    rows += [_row(result) for result in results]
+    lines = [text_table(rows, header_rows=2)]
+    gaps = [result.gap for result in results if result.gap is not None]
+    if gaps:
+        lines.append(f"gap to the optimum: mean {100 * np.mean(gaps):.3f} %, worst {100 * max(gaps):.3f} %")
+    lines.extend(
+        f"{result.insect.name} is INFEASIBLE: no stroke of the box supports more than "
+        f"{result.best.max_weight_support:.3f} of its weight; {called} {result.weight_support:.3f}"
+        for result in results
+        if not result.best.feasible
+    )
+    lines += [
+        "±: the model's own error against CFD at the insect's stroke (without CFD, the rms of the eight insects')",
+        "saved: of the own stroke's power by CFD and by this model, each beaten as fast as carries exactly the weight",
+    ]
+    lines += [ranking_sentence(results, called), outside_sentences(results)]
+    return "\n".join(line for line in lines if line)
+
+
+def _row(result: StrokeAssessment) -> tuple[str, ...]:
+    """One insect."""
+    best = result.best
+    return (
+        result.insect.name,
+        f"{result.weight_support:.4f}",
+        f"{result.specific_power:.2f}",
+        f"{result.power_uncertainty:.1f}",
+        f"{best.specific_power:.2f}" if best.feasible else "none",
+        number(best.lower_bound, 2),
+        number(result.gap, 2, percent=True),
+        "",
+        number(result.cfd_power, 0),
+        f"{result.own_specific_power:.1f}",
+        f"{result.own_weight_support:.3f}",
+        "",
+        number(result.saving_to_cfd, 0, percent=True),
+        number(result.saving_uncertainty, 0, percent=True),
+        number(result.saving, 0, percent=True),
+    )
+
+
+def number(value: float | None, digits: int, *, percent: bool = False) -> str:
+    """A number, or that there is none.
+
+    Args:
+        value: in its unit, or a fraction.
+        digits: after the point.
+        percent: whether a fraction is told in percent.
+    """
+    return "none" if value is None else f"{100 * value if percent else value:.{digits}f}"
+
+
+def ranking_table(results: Sequence[StrokeAssessment]) -> str:
+    """What each model says a stroke saves of the insect's own, both carrying the weight in that model [%].
+
+    A negative number says that the insect's own stroke needs less there.
+    """
+    models = list(dict.fromkeys(ranking.model for result in results for ranking in result.rankings))
+    rows: list[tuple[str, ...]] = [("saved [%] in", "this model", *models)]
+    for result in results:
+        saved = {ranking.model: number(ranking.saving, 1, percent=True) for ranking in result.rankings}
+        rows.append((result.insect.name, number(result.saving, 1, percent=True), *(saved.get(m, "-") for m in models)))
+    return text_table(rows)
+
+
+def ranking_sentence(results: Sequence[StrokeAssessment], called: str = LEARNED) -> str:
+    """In how many of the models the strokes still need less power than the insects' own, and where not.
+
+    Args:
+        results: one an insect; those whose stroke is the insect's own are left out.
+        called: what the strokes are, in a word.
+    """
+    judged = [
+        (result.insect.name, ranking)
+        for result in results
+        for ranking in result.rankings
+        if result.stroke != result.insect.stroke
+    ]
+    if not judged:
+        return ""
+    lost = [f"{name} ({ranking.model})" for name, ranking in judged if not ranking.survives]
+    held = f"{len(judged) - len(lost)} of {len(judged)}"
+    end = f"; not for {', '.join(lost)}" if lost else ""
+    return f"{called} needs less than the own stroke in {held} cases of other models{end}"
+
+
+def outside_sentences(results: Sequence[StrokeAssessment]) -> str:
+    """What of the strokes and wings no CFD case covers, and what lies beyond the box; with the insects it holds for."""
+    validated = _grouped({result.insect.name: result.outside for result in results})
+    box = _grouped({result.insect.name: result.beyond_box for result in results})
+    lines = ["outside of what CFD has validated:", *validated] if validated else []
+    return "\n".join([*lines, *(["outside of the problem's box, so that a gap may be negative:", *box] if box else [])])
+
+
+def _grouped(outside: Mapping[str, Sequence[Quantity]]) -> list[str]:
+    """A line for each quantity and range, those that most insects share first."""
+    found: dict[tuple[str, str], dict[str, float]] = {}
+    for insect, quantities in outside.items():
+        for quantity in quantities:
+            found.setdefault((quantity.name, quantity.range_text), {})[insect] = quantity.value
+    lines = []
+    for (name, where), values in sorted(found.items(), key=lambda item: -len(item[1])):
+        low, high = (f"{value:.4g}" for value in (min(values.values()), max(values.values())))
+        who = "all" if len(values) == len(outside) > 1 else ", ".join(values)
+        lines.append(f"  {name} = {low if low == high else f'{low} to {high}'}, beyond {where}: {who}")
+    return lines

@@ -1,0 +1,134 @@
+"""Judging strokes from the command line: published ones, files, and wings of one's own."""
+
+import dataclasses
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import train as command
+from flapenv import INSECTS, Stroke, load_insect, optimum
+from flapenv.files import NamedStroke, WingFile, write_strokes, write_wing
+from flapenv.simulation import evaluate_by_blade_element
+from flapenv.validation import table3
+
+SLOW = Stroke(frequency=100.0, flap_amplitude=1.0, pitch_amplitude=0.9)
+FINE = {"strips": 6, "spacing": "gauss", "steps": 40_000}
+
+
+def evaluated(capsys: pytest.CaptureFixture[str], *arguments: Any) -> tuple[int, str, str]:
+    code = command.main(["evaluate", *map(str, arguments)])
+    return code, *capsys.readouterr()
+
+
+def line_of(text: str, insect: str) -> list[str]:
+    return next(line for line in text.splitlines() if line.startswith(f"{insect} ")).split()
+
+
+def test_a_published_stroke_is_its_line_of_table_3(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = evaluated(capsys, "published")
+    assert code == 0
+    for row in table3():
+        words = line_of(out, row.insect)
+        assert words[1] == f"{row.weight_support:.4f}"
+        assert float(words[2]) == pytest.approx(row.specific_power, abs=0.005)
+        assert words[2:] == line_of(evaluated(capsys, row.insect)[1], row.insect)[2:]
+        assert words[-1] == "0"  # it saves nothing of itself
+
+
+@pytest.mark.parametrize("ending", ["json", "csv"])
+def test_strokes_of_a_file_are_judged_as_they_were_written(
+    ending: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / f"best.{ending}"
+    write_strokes(file, [NamedStroke(insect=name, stroke=optimum(name).stroke) for name in INSECTS])
+    code, out, _ = evaluated(capsys, file, "--out", tmp_path / "kept")
+    assert code == 0
+    assert "mean 0.000 %, worst 0.000 %" in out
+    kept = json.loads((tmp_path / "kept" / "best" / "results.json").read_text(encoding="utf-8"))
+    for name in INSECTS:
+        entry = kept["insects"][name]
+        assert Stroke(**entry["stroke"]) == optimum(name).stroke
+        assert line_of(out, name)[2:4] == [f"{entry['specific_power']:.2f}", f"{entry['power_uncertainty']:.1f}"]
+    assert (tmp_path / "kept" / "best" / "learned.png").stat().st_size > 10_000
+
+
+def test_the_shipped_policy_needs_less_than_every_insects_own_stroke_and_the_oracle_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, out, _ = evaluated(capsys, "hover", "--out", tmp_path)
+    assert code == 0
+    kept = json.loads((tmp_path / "hover" / "results.json").read_text(encoding="utf-8"))["insects"]
+    assert list(kept) == list(INSECTS)
+    for name, entry in kept.items():
+        insect, learned = load_insect(name), Stroke(**entry["stroke"])
+        support, power = evaluate_by_blade_element(insect, learned, **FINE)
+        own_support, own_power = evaluate_by_blade_element(insect, insect.stroke, **FINE)
+        assert (entry["weight_support"], entry["specific_power"]) == pytest.approx((support, power), rel=1e-4)
+        assert support == pytest.approx(1, abs=2e-4)
+        assert power < own_power / own_support**1.5
+        uncertainty = abs(own_power / insect.cfd.specific_power - 1) * power
+        assert entry["power_uncertainty"] == pytest.approx(uncertainty, rel=1e-3)
+        assert power + uncertainty < insect.cfd.specific_power
+        words = line_of(out, name)
+        assert words[1:4] == [f"{support:.4f}", f"{power:.2f}", f"{uncertainty:.1f}"]
+        assert words[-3:] == [
+            f"{entry[key]:.0f}"
+            for key in ("saving_to_cfd_percent", "saving_to_cfd_uncertainty_percent", "saving_percent")
+        ]
+    assert "29 of 30 cases of other models; not for hawkmoth (positive power)" in out
+
+
+def test_a_stroke_of_nobody_is_beaten_by_whom_it_is_given_to(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_strokes(tmp_path / "one.csv", [NamedStroke(stroke=SLOW)])
+    assert "allowed: an insect with every stroke" in evaluated(capsys, tmp_path / "one.csv")[2]
+    _, out, _ = evaluated(capsys, tmp_path / "one.csv", "--insects", "fruitfly", "honeybee")
+    assert line_of(out, "fruitfly") != line_of(out, "honeybee")
+
+
+def test_a_wing_of_ones_own_is_held_against_its_limits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = dataclasses.replace(load_insect("dronefly"), name="robot", k_table=None, cfd=None)
+    narrow = {"flap_amplitude": (math.radians(40), math.radians(60))}
+    write_wing(tmp_path / "robot.json", WingFile(insect=robot, limits=narrow))
+    code, out, _ = evaluated(capsys, "random-wings", "--wing", tmp_path / "robot.json")
+    assert code == 0
+    assert "beyond 40 to 60°: robot" in out
+    assert line_of(out, "robot")[3] == f"{0.109 * float(line_of(out, 'robot')[2]):.1f}"  # the rms of the eight
+    write_strokes(tmp_path / "stroke.json", [NamedStroke(insect=robot, stroke=SLOW)])
+    _, out, _ = evaluated(capsys, tmp_path / "stroke.json", "--wing", tmp_path / "robot.json")
+    assert line_of(out, "robot")[1] == f"{evaluate_by_blade_element(robot, SLOW, **FINE)[0]:.4f}"
+
+
+def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bee = [NamedStroke(insect="honeybee", stroke=SLOW)]
+    write_strokes(tmp_path / "bee.json", bee)
+    write_strokes(tmp_path / "two.json", bee * 2)
+    write_wing(tmp_path / "wing.json", WingFile(insect=load_insect("hawkmoth")))
+    text = (tmp_path / "bee.json").read_text(encoding="utf-8")
+    (tmp_path / "degrees.json").write_text(text.replace('"flap_amplitude": 1.0', '"flap_amplitude": 60'), "utf-8")
+    (tmp_path / "cut.json").write_text(text[: len(text) // 2], encoding="utf-8")
+    (tmp_path / "empty.csv").touch()
+    for arguments, said in (
+        (("missing.json",), "missing.json"),
+        ((tmp_path / "cut.json",), "cut.json"),
+        ((tmp_path / "empty.csv",), "empty.csv"),
+        ((tmp_path / "degrees.json",), "degrees"),
+        ((tmp_path / "two.json",), "several strokes of honeybee"),
+        ((tmp_path / "bee.json", "--insects", "hawkmoth"), "no stroke of hawkmoth; allowed: honeybee"),
+        ((tmp_path / "bee.json", "--wing", tmp_path / "wing.json"), "no stroke of hawkmoth"),
+        ((tmp_path / "bee.json", "--noise", "0.1"), "--noise is not told of strokes"),
+        ((tmp_path / "bee.json", "--pool-seed", "1"), "--pool-seed is not told of strokes"),
+        (("hawkmoth", "--wing", tmp_path / "wing.json"), "belong to the insects"),
+        (("hawkmoth", "--insects", "honeybee"), "published --insects"),
+        (("hover", "--wing", tmp_path / "wing.json", "--insects", "honeybee"), "allowed: one of them"),
+        (("hover", "--wing", tmp_path / "bee.json"), "bee.json"),
+        (("hawkmot",), "did you mean 'hawkmoth'"),
+    ):
+        code, out, err = evaluated(capsys, *arguments)
+        assert (code, out) == (2, ""), arguments
+        assert said in err
+        assert len(err.strip().splitlines()) == 1, err
