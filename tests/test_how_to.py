@@ -1,6 +1,7 @@
 """The pages of docs/how-to run, but for what needs another virtual environment."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import pytest
 from running_pages import DOCS, FENCE, run_python, run_shell
 
+import flapenv
 from agents.tasks import Verdict
 
 HOW_TO = DOCS / "how-to"
@@ -22,6 +24,33 @@ def test_the_learners_of_ones_own_learn(tmp_path: Path, monkeypatch: pytest.Monk
     assert verdict.worst < 0.001
     (printed,) = run_shell(HOW_TO / "own-learner.md").values()
     assert "hover-gradient" in printed
+
+
+def test_a_wing_of_ones_own_goes_through_everything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(DOCS / "examples", tmp_path / "docs" / "examples")
+    monkeypatch.chdir(tmp_path)
+    run_python(HOW_TO / "own-wing.md")
+    assert (tmp_path / "robot.gif").exists()
+    printed = run_shell(HOW_TO / "own-wing.md")
+    assert "21.29  20.37" in printed["python train.py optimum --wing docs/examples/robot.json"]
+    assert all("invented-robot" in text for text in printed.values())
+
+
+def test_what_the_page_of_evaluation_names_is_judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    run_python(HOW_TO / "evaluate.md")
+    printed = run_shell(HOW_TO / "evaluate.md")
+    for command, line in zip(list(printed)[:2], ("22.85  2.4    22.85  21.86  0.01", "29.59  3.1"), strict=True):
+        assert line in printed[command]
+    assert (tmp_path / "judged" / "hover" / "results.json").exists()
+
+
+def test_a_table_of_strokes_as_the_page_shows_it_is_read(tmp_path: Path) -> None:
+    page = (HOW_TO / "evaluate.md").read_text(encoding="utf-8")
+    lines = [line.strip() for line in page.splitlines() if line.startswith(("    insect,", "    hawkmoth,"))]
+    (tmp_path / "strokes.csv").write_text("\n".join(lines), encoding="utf-8")
+    (stroke,) = flapenv.read_strokes(tmp_path / "strokes.csv")
+    assert stroke.insect == flapenv.load_insect("hawkmoth")
 
 
 def test_the_sweep_is_a_script_that_trains_in_two_processes(tmp_path: Path) -> None:
