@@ -32,7 +32,8 @@ def run_shell(page: Path) -> dict[str, str]:
     """Run every command of the `sh` blocks where the process stands, as in a clone; what each printed."""
     printed = {}
     fences = FENCE.findall(page.read_text(encoding="utf-8"))
-    commands = [line for language, block in fences if language == "sh" for line in block.splitlines()]
+    blocks = [block.replace("\\\n", " ") for language, block in fences if language == "sh"]
+    commands = [line for block in blocks for line in block.splitlines()]
     assert commands, f"{page.name} has no command"
     environment = {**os.environ, "PYTHONPATH": str(DOCS.parent), "OMP_NUM_THREADS": "1"}
     for command in commands:
