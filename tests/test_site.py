@@ -21,7 +21,8 @@ TREE = re.compile(r"^```\{toctree\}\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE
 def entries(page: Path) -> list[Path]:
     """The pages that a page's tables of contents hold."""
     lines = [line for tree in TREE.findall(page.read_text(encoding="utf-8")) for line in tree.splitlines()]
-    return [(page.parent / f"{line}.md").resolve() for line in lines if line and not line.startswith(":")]
+    names = [re.sub(r".*<(.*)>", r"\1", line) for line in lines if line and not line.startswith(":")]
+    return [(page.parent / f"{name}.md").resolve() for name in names]
 
 
 @pytest.fixture(scope="module")
