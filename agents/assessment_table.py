@@ -75,7 +75,9 @@ def number(value: float | None, digits: int, *, percent: bool = False) -> str:
         digits: after the point.
         percent: whether a fraction is told in percent.
     """
-    return "none" if value is None else f"{100 * value if percent else value:.{digits}f}"
+    if value is None:
+        return "none"
+    return f"{round(100 * value if percent else value, digits) + 0.0:.{digits}f}"  # + 0.0, so that no zero is negative
 
 
 def ranking_table(results: Sequence[StrokeAssessment]) -> str:
@@ -106,10 +108,13 @@ def ranking_sentence(results: Sequence[StrokeAssessment], called: str = LEARNED)
     ]
     if not judged:
         return ""
-    lost = [f"{name} ({ranking.model})" for name, ranking in judged if not ranking.survives]
-    held = f"{len(judged) - len(lost)} of {len(judged)}"
-    end = f"; not for {', '.join(lost)}" if lost else ""
-    return f"{called} needs less than the own stroke in {held} cases of other models{end}"
+    lost: dict[str, list[str]] = {}
+    for name, ranking in judged:
+        if not ranking.survives:
+            lost.setdefault(ranking.model, []).append(name)
+    held = len(judged) - sum(map(len, lost.values()))
+    end = "".join(f"; not with {model}: {', '.join(names)}" for model, names in lost.items())
+    return f"{called} needs less than the own stroke in {held} of {len(judged)} cases of other models{end}"
 
 
 def outside_sentences(results: Sequence[StrokeAssessment]) -> str:

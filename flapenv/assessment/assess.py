@@ -87,7 +87,12 @@ class StrokeAssessment:
 
     @property
     def saving_to_cfd(self) -> float | None:
-        """1 - P*/P*_CFD, this stroke carrying the weight in this model and the insect's own in CFD [-]."""
+        """1 - P*/P*_CFD, this stroke carrying the weight in this model and the insect's own in CFD [-].
+
+        None where only positive power is paid, too: CFD's power is what springs return, and less.
+        """
+        if self.problem.model.accounting == "positive":
+            return None
         return _saved(self.hovering_power, self.cfd_power)
 
     @property

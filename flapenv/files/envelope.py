@@ -106,7 +106,7 @@ def require_single(part: Stroke | Insect) -> None:
     """
     for field, value in vars(part).items():
         if not is_single(value):
-            raise TypeError(f"{field} of a {type(part).__name__.lower()} has array fields; allowed: scalars")
+            raise TypeError(f"{field} of {type(part).__name__} is an array; allowed: scalar fields")
     name = getattr(part, "name", "")
     if not (name.isprintable() and len(name) <= LONGEST_NAME):
         raise ValueError(f"name = {name[:LONGEST_NAME]!r} is not allowed; allowed: {LONGEST_NAME} visible letters")

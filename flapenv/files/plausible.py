@@ -18,7 +18,7 @@ FASTEST = 5000.0
 SLENDERNESS = (1.0, 20.0)
 """Aspect ratio of one wing [-]; the lifting line is good above 2.8, the extended one below 3; insects show 2.8-6."""
 CENTRES = (0.38, 0.65)
-"""r̂₁ [-]; insects show 0.44-0.58, and outside of these the downwash series of k_ind leaves any measured range."""
+"""r̂₁ [-] of wings without tabulated k; insects show 0.44-0.58, and k_ind of a beta planform leaps from 0.66 on."""
 LOADINGS = (0.01, 1000.0)
 """Weight over the area of both wings [N/m²]; insects show 2-20."""
 GRAVITY = 9.81

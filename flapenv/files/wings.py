@@ -23,7 +23,7 @@ from flapenv.files.envelope import (
 )
 from flapenv.files.plausible import FASTEST, require_plausible
 from flapenv.files.strokes import stroke_of
-from flapenv.insects import Insect
+from flapenv.insects import INSECTS, Insect, described
 from flapenv.problem import HoverProblem, StrokeBox
 from flapenv.read_json import read_object
 
@@ -59,6 +59,10 @@ class WingFile:
         if not isinstance(self.insect, Insect):
             raise TypeError(f"insect = {self.insect!r} is not allowed; allowed: an Insect")
         require_single(self.insect)
+        if self.insect.name in INSECTS and isinstance(described(self.insect), dict):
+            raise ValueError(
+                f"name = {self.insect.name!r} is that of an insect with other numbers; allowed: a name of one's own"
+            )
         require_plausible(self.insect)
         if not isinstance(self.limits, Mapping):
             raise TypeError(f"limits = {self.limits!r} are not allowed; allowed: an object of [lower, upper]")
@@ -96,11 +100,11 @@ class WingFile:
 
     def _common(self, field: str, own: str, bounds: tuple[float, float]) -> tuple[float, float]:
         """What the bounds of a problem, in its own terms, and the limits share."""
-        name, factor = field.removesuffix("_ratio"), 1.0
+        low, high = self.limits[field]
         if field != own:
-            reference = float(getattr(self.insect.reference, name))
-            factor = reference if own == name else 1 / reference
-        low, high = (limit * factor for limit in self.limits[field])
+            reference = float(getattr(self.insect.reference, field.removesuffix("_ratio")))
+            to_absolute = field.endswith("_ratio")  # divided, not multiplied by 1/reference: own over own is 1 exactly
+            low, high = (end * reference if to_absolute else end / reference for end in (low, high))
         common = max(low, bounds[0]), min(high, bounds[1])
         if common[0] > common[1]:
             raise ValueError(

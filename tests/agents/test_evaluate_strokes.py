@@ -78,7 +78,7 @@ def test_the_shipped_policy_needs_less_than_every_insects_own_stroke_and_the_ora
             f"{entry[key]:.0f}"
             for key in ("saving_to_cfd_percent", "saving_to_cfd_uncertainty_percent", "saving_percent")
         ]
-    assert "29 of 30 cases of other models; not for hawkmoth (positive power)" in out
+    assert "29 of 30 cases of other models; not with positive power: hawkmoth\n" in out
 
 
 def test_a_stroke_of_nobody_is_beaten_by_whom_it_is_given_to(

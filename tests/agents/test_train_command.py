@@ -1,5 +1,6 @@
 """The command line that trains."""
 
+import dataclasses
 import json
 import os
 import signal
@@ -12,9 +13,11 @@ import pytest
 
 import train
 from agents.presets import DEFAULT_PRESET, PRESETS
-from agents.train_command import what_counts
+from agents.train_command import config_of, parser, what_counts
+from flapenv import HoverProblem, WingFile, read_wing, write_wing
 
 ROOT = Path(__file__).parents[2]
+ROBOT = ROOT / "docs" / "examples" / "robot.json"
 
 
 def command(*arguments: str, cwd: Path = ROOT) -> subprocess.Popen[str]:
@@ -111,6 +114,10 @@ CONFIG = {"task": {"name": "hover"}, "algorithm": "PPO", "settings": {"wingbeats
             "has no argument 'insects'",
         ),
         (("--config", "nowhere.json"), "nowhere.json"),
+        (("--wing", "nowhere.json"), "nowhere.json does not exist; allowed: a wing file"),
+        (("--wing", str(ROBOT), "--insects", "hawkmoth"), "--insects and --wing both say what flies"),
+        (("--wing", str(ROBOT), "--preset", "random-wings-ppo"), "--wing is not told of task 'random-wings'"),
+        (("--wing", str(ROBOT), "--wing", str(ROBOT)), "2 called 'invented-robot'"),
         (("--preset", ""), "preset = '' is unknown"),
         (("--wingbeats", "1"), "allowed: at least one update, rows x steps = 2048"),
         (("--algorithm", "sac", "--wingbeats", "1000"), "more than learning_starts = 2000"),
@@ -138,6 +145,8 @@ def test_bad_input_is_one_line_and_exit_code_2(
     [
         ("{", "is not JSON"),
         ("[]", "holds no object"),
+        ("", "is empty"),
+        ('{"task": 1, "task": 2}', "the key 'task' stands twice"),
         (json.dumps({"tasks": {}, **CONFIG}), "did you mean 'task'?"),
         (json.dumps({"task": {}}), "lacks algorithm, settings"),
         (json.dumps({**CONFIG, "settings": {"wingbeat": 512}}), "did you mean 'wingbeats'?"),
@@ -177,9 +186,37 @@ def test_a_run_is_repeated_from_its_config(tmp_path: Path, capsys: pytest.Captur
     assert "hawkmoth" in capsys.readouterr().out
 
 
+def test_a_wing_of_ones_own_is_trained_within_its_limits_and_repeated_from_the_config(tmp_path: Path) -> None:
+    small = ["--wingbeats", "1024", "--set", "rows=512", "--set", "epochs=1", "--quiet"]
+    assert train.main(["--wing", str(ROBOT), *small, "--out", str(tmp_path / "a")]) == 0
+    again = ["--config", str(tmp_path / "a" / "config.json"), "--out", str(tmp_path / "b"), "--quiet"]
+    assert train.main(again) == 0
+    one, two = (json.loads((tmp_path / name / "results.json").read_text(encoding="utf-8")) for name in "ab")
+    wing = read_wing(ROBOT)
+    assert list(one["insects"]) == [wing.insect.name]
+    assert one["insects"] == two["insects"]
+    assert one["problem"] == two["problem"] == json.loads(json.dumps(wing.problem(HoverProblem()).to_dict()))
+    low, high = wing.limits["frequency"]
+    assert low <= one["insects"][wing.insect.name]["stroke"]["frequency"] <= high
+
+
+def test_wings_of_other_limits_cannot_share_a_policy(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wing = read_wing(ROBOT)
+    other = dataclasses.replace(wing.insect, name="other")
+    for name, limits in (("wide", {**wing.limits, "frequency": (10, 200)}), ("same", wing.limits)):
+        write_wing(tmp_path / f"{name}.json", WingFile(insect=other, limits=limits))
+    arguments = ["--wing", str(ROBOT), "--wing", str(tmp_path / "wide.json"), "--out", str(tmp_path / "run")]
+    assert train.main(arguments) == 2
+    assert f"wide.json has other limits than {ROBOT}; allowed: equal ones" in capsys.readouterr().err
+    options = parser().parse_args(["--wing", str(ROBOT), "--wing", str(tmp_path / "same.json")])
+    task = config_of(options, "").preset.make_task()
+    assert [one.name for one in task.insects] == ["invented-robot", "other"]
+
+
 def test_help_teaches_and_the_list_names_every_preset() -> None:
     out, _ = command("--help").communicate(timeout=60)
-    for word in ("examples:", "--seed", "--out", "results.json", "Ctrl-C", "hawkmoth", "evaluate", "benchmark"):
+    commands = ("evaluate", "optimum", "benchmark", "compare")
+    for word in ("examples:", "--seed", "--out", "--wing", "results.json", "Ctrl-C", "hawkmoth", *commands):
         assert word in out
     out, _ = command("--list").communicate(timeout=60)
     for name in PRESETS:
@@ -192,3 +229,5 @@ def test_the_card_tells_the_command_without_where_it_is_kept(tmp_path: Path) -> 
         *("--seed", "3", "--insects", "hawkmoth"),
         *("--config", "c.json"),
     ]
+    wings = ["--wing", str(tmp_path / "a.json"), f"--wing={tmp_path / 'b.json'}"]
+    assert what_counts(wings) == ["--wing", "a.json", "--wing=b.json"]

@@ -103,6 +103,7 @@ def test_a_wing_without_cfd_gets_the_rms_error_of_the_eight_insects() -> None:
 
 def test_without_springs_the_error_is_still_that_of_the_power_that_cfd_has(hawkmoth: Insect) -> None:
     assert model_error(hawkmoth, HoverModel(accounting="positive")) == model_error(hawkmoth, HoverModel())
+    assert assess(hawkmoth, problem="inertial").saving_to_cfd is None
 
 
 def test_missing_weight_and_strokes_beyond_the_box_show_in_the_gap(hawkmoth: Insect) -> None:
