@@ -1,4 +1,8 @@
-"""Pages of docs/ that are run as a reader would: Python in order, then the shell commands that take seconds."""
+"""Pages of docs/ that are run as a reader would: Python in order, then the shell commands that take seconds.
+
+What is printed by plain physics stands in `text` blocks and must be so to the letter; what a policy or a search printed
+stands in indented blocks, whose numbers may differ from machine to machine.
+"""
 
 import contextlib
 import io
@@ -44,3 +48,18 @@ def run_shell(page: Path) -> dict[str, str]:
         assert done.returncode == 0, f"{page.name}: {command}\n{done.stdout}{done.stderr}"
         printed[command] = done.stdout
     return printed
+
+
+def require_quoted(page: Path, printed: str) -> None:
+    """Require that every indented line of a page, but "...", was printed, whatever its numbers."""
+    text = FENCE.sub("", page.read_text(encoding="utf-8"))
+    quoted = [line for line in text.splitlines() if line.startswith("    ") and line.strip() != "..."]
+    assert quoted, f"{page.name} quotes nothing"
+    known = {_shape(line) for line in printed.splitlines()}
+    for line in quoted:
+        assert _shape(line) in known, f"{page.name} quotes what is not printed: {line}\n{printed}"
+
+
+def _shape(line: str) -> str:
+    """A line without its numbers and the width of its columns."""
+    return re.sub(r"-{3,}", "---", re.sub(r"[-+]?\d[\d.,]*(e[-+]\d+)?", "#", " ".join(line.split())))

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from running_pages import DOCS, run_python, run_shell
+from running_pages import DOCS, require_quoted, run_python, run_shell
 
 from agents.training import TrainingResult
 
@@ -19,5 +19,5 @@ def test_the_tutorial_runs_from_the_first_block_to_the_last(tmp_path: Path, monk
     assert result.verdict.mean < 0.01, "it promises five hundredths of a per cent"
     assert (tmp_path / "hawkmoth.gif").stat().st_size > 10_000
     printed = run_shell(PAGE)
-    assert "gap to the optimum" in printed["python train.py evaluate runs/tutorial"]
     assert "random-wings" in printed["python train.py evaluate --list"]
+    require_quoted(PAGE, "\n".join([result.verdict.text, *printed.values()]))
