@@ -10,6 +10,7 @@ COMMANDS = {
     "benchmark": "agents.benchmark.command",
     "compare": "agents.competition.command",
     "evaluate": "agents.evaluate_command",
+    "explore": "agents.explore_command",
     "optimum": "agents.optimum_command",
 }
 """Where each command NAME is, as NAME_command; without one of them a policy is trained."""

@@ -1,0 +1,136 @@
+"""Insects in problems, solved once: what the sliders need without solving anything."""
+
+import dataclasses
+import json
+import threading
+from collections import OrderedDict
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+from agents.comparison import Comparison
+from agents.explorer.controls import OWN_WING, read_insect
+from agents.policy_file import load_policy
+from flapenv.aero.checks import require_name
+from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.stroke import Stroke
+from flapenv.assessment import StrokeAssessment, assess, outside_validated
+from flapenv.assessment.hovering import hovering
+from flapenv.assessment.validity import outside_box
+from flapenv.files import WingFile
+from flapenv.insects import INSECTS, Insect, load_insect
+from flapenv.performance import evaluate
+from flapenv.problem import PROBLEMS, HoverProblem
+
+EXPLORED = ("free-frequency", "fixed-frequency", "profile-drag")
+"""Problems that are solved in a moment."""
+LEARNED_IN = PROBLEMS["free-frequency"]
+"""What the shipped policies were trained for, whatever is explored."""
+POLICY, WING_POLICY = "hover", "random-wings"
+"""The shipped policies of the eight insects, and of any wing."""
+KEPT = 64
+"""Cases that are kept; the one that was used longest ago goes first."""
+
+
+class Case:
+    """An insect in a problem with its optimum, beside which strokes are judged in a moment."""
+
+    def __init__(self, insect: Insect, problem: HoverProblem) -> None:
+        """Solve the optimum.
+
+        Raises:
+            ValueError: for a wing that the model has no answer for.
+            ArithmeticError: where the optimum cannot be confirmed.
+        """
+        self.insect, self.problem = insect, problem
+        self.own = assess(insect, problem=problem)
+
+    def judged(self, stroke: Stroke) -> StrokeAssessment:
+        """A stroke judged as `assess` does it, without the other models; solves nothing."""
+        model = self.problem.model
+        found, carried = evaluate(self.insect, stroke, **vars(model)), hovering(self.insect, stroke, model)
+        return dataclasses.replace(
+            self.own,
+            stroke=stroke,
+            weight_support=found.weight_support,
+            specific_power=found.specific_power,
+            gap=self.own.best.gap(found.weight_support, found.specific_power),
+            hovering_power=carried.specific_power if carried else None,
+            outside=outside_validated(self.insect, stroke, air_density=model.air_density),
+            beyond_box=outside_box(self.insect, stroke, self.problem.box),
+            rankings=(),
+        )
+
+    def strokes(self) -> dict[str, Stroke]:
+        """What the buttons load, by label."""
+        return {"own": self.insect.stroke, "optimal": self.own.best.stroke, "learned": self.learned}
+
+    @cached_property
+    def learned(self) -> Stroke:
+        """The stroke of the shipped policy that knows the insect, or any wing."""
+        actor, _ = load_policy(POLICY if self.insect.name in INSECTS else WING_POLICY)
+        info = Comparison([self.insect], LEARNED_IN).beat(actor)
+        return Stroke(**{name: float(info[f"stroke/{name}"][0]) for name in STROKE_PARAMETERS})
+
+
+class Cases:
+    """The cases that the page asked for, by a key that only `solve` gives out."""
+
+    def __init__(self, extra: WingFile | None = None) -> None:
+        """Know the eight insects, and one more.
+
+        Args:
+            extra: of a file, whose limits narrow every problem's box.
+
+        Raises:
+            ValueError: for a name that is taken.
+        """
+        self.insects: Mapping[str, Insect] = {name: load_insect(name) for name in INSECTS}
+        self.extra = extra
+        if extra is not None:
+            name = extra.insect.name
+            if name in (*INSECTS, OWN_WING):
+                raise ValueError(f"name = {name!r} is taken by one of the page's own; allowed: another name")
+            self.insects = {name: extra.insect, **self.insects}
+        self._solved: OrderedDict[str, Case] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def solve(self, name: object, own: object, problem: object) -> tuple[str, Case]:
+        """The case that the page asks for, with its key; solved where it is asked for the first time.
+
+        Args:
+            name: as in `read_insect`.
+            own: likewise.
+            problem: one of `EXPLORED`.
+
+        Raises:
+            TypeError: for a field of another kind.
+            ValueError: for an unknown name or a number that is not allowed.
+            ArithmeticError: where the optimum cannot be confirmed.
+        """
+        insect = read_insect(name, own, self.insects)
+        chosen = PROBLEMS[require_name("problem", problem, EXPLORED)]
+        if self.extra is not None and insect is self.extra.insect:
+            chosen = self.extra.problem(chosen)
+        key = json.dumps([name, own if name == OWN_WING else None, chosen.name], ensure_ascii=True)
+        with self._lock:
+            case = self._solved.get(key)
+        case = case or Case(insect, chosen)
+        with self._lock:
+            self._solved[key] = case
+            self._solved.move_to_end(key)
+            while len(self._solved) > KEPT:
+                self._solved.popitem(last=False)
+        return key, case
+
+    def known(self, key: Any) -> Case:
+        """The case of a key.
+
+        Raises:
+            ValueError: for a key that `solve` did not give out, or so long ago that its case is gone.
+        """
+        with self._lock:
+            case = self._solved.get(key) if isinstance(key, str) else None
+        if case is None:
+            raise ValueError("this page is older than the explorer that answers it; reload the page")
+        return case

@@ -1,0 +1,144 @@
+"""The beating wing: sections with the force on them, frame by frame, which beat.js plays."""
+
+import html
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from agents.plots.style import RULE, line_styles, rounded, styled
+from flapenv.aero.stroke import Stroke
+from flapenv.animation.beat import STAMPS, DrawnBeat, drawn_beat
+from flapenv.drawing import BLACK
+from flapenv.insects import Insect
+from flapenv.model import HoverModel
+
+SCRIPT = Path(__file__).with_name("beat.js")
+"""What plays the figure wherever plotly.js and this script are on the page."""
+SECONDS = 2.4
+"""That one wingbeat takes on the screen."""
+ROW, GAP, TOP, FOOT = 205, 34, 46, 56
+"""Heights of a stroke's row, of its title, of what is above the first and below the last [px]."""
+ABOVE, BELOW, BESIDE = 2.1, 1.35, 0.7
+"""Room around the path of the section [mean chords]: above it for the arrows, below and beside it for the chord."""
+LONGEST = 1.8
+"""Arrow of the largest force [mean chords]."""
+TRAIL = "#d8d8d8"
+
+
+def beat(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel, frames: int = 48) -> go.Figure:
+    """Wing sections at r̂₂ R with the aerodynamic force of each stroke, one above the other, all at the same t/T.
+
+    The first frame is drawn; the others stand in `figure.layout.meta["beat"]`: "traces", the numbers of what moves,
+    "seconds" of one wingbeat, and "frames", a list of {"x": [...], "y": [...], "text": [...]} with an entry a trace.
+
+    Args:
+        insect: whose wing it is.
+        strokes: by label, at most four.
+        model: of the aerodynamics.
+        frames: of one wingbeat.
+    """
+    beats = {label: drawn_beat(insect, stroke, model=model, frames=frames) for label, stroke in strokes.items()}
+    longest = max(float(np.max(np.hypot(*one.force[one.rows].T))) for one in beats.values())
+    unit = LONGEST / max(longest, 1.0)  # mean chords for one weight
+    figure, inside = _rows(beats)
+    moving: list[int] = []
+    parts: list[list[list[dict[str, Any]]]] = []
+    for row, (label, style) in enumerate(line_styles(beats).items(), start=1):
+        one = beats[label]
+        _still(figure, row, one, unit)
+        made = _moving(one, unit)
+        for number, looks in enumerate(_looks(style.colour)):
+            moving.append(len(figure.data))
+            figure.add_scatter(**made[0][number], **looks, hoverinfo="skip", row=row, col=1)
+        parts.append(made)
+    played = [[piece for made in parts for piece in made[frame]] for frame in range(frames)]
+    kept = [{key: [piece.get(key) for piece in pieces] for key in ("x", "y", "text")} for pieces in played]
+    figure.update_layout(meta={"beat": {"traces": moving, "seconds": SECONDS, "frames": kept}}, height=inside)
+    return figure
+
+
+def _rows(beats: Mapping[str, DrawnBeat]) -> tuple[go.Figure, int]:
+    """Empty rows with one scale for all, and the figure's height [px]."""
+    count = len(beats)
+    inside = count * ROW + (count - 1) * GAP
+    rates = {label: one.motion.frequency for label, one in beats.items()}
+    titles = [
+        f"<b>{html.escape(label)}</b>: {rate:.4g} Hz, shown {rate * SECONDS:.0f}× slower"
+        for label, rate in rates.items()
+    ]
+    figure = make_subplots(
+        rows=count, cols=1, shared_xaxes=True, vertical_spacing=GAP / inside if count > 1 else 0, subplot_titles=titles
+    )
+    styled(figure, inside + TOP + FOOT)
+    figure.update_annotations(x=0, xanchor="left", font_size=13)
+    reach = max(float(np.max(np.abs(one.axis[:, 0]))) for one in beats.values()) + BESIDE
+    figure.update_xaxes(range=rounded([-reach, reach]), zeroline=False, showgrid=False)
+    figure.update_yaxes(
+        range=[-BELOW, ABOVE], showticklabels=False, ticks="", showline=False, zeroline=False, showgrid=False
+    )
+    for row in range(1, count + 1):
+        across = "x" if row == 1 else f"x{row}"
+        figure.update_yaxes(scaleanchor=across, scaleratio=1, row=row, col=1)
+    figure.update_xaxes(title_text="along the arc at r̂₂ [mean chords], forward →", row=count, col=1)
+    figure.update_layout(showlegend=False, margin={"t": TOP, "b": FOOT, "l": 14, "r": 14})
+    return figure, inside + TOP + FOOT
+
+
+def _still(figure: go.Figure, row: int, one: DrawnBeat, unit: float) -> None:
+    """The path, sections at equal times, and the scale of the arrows."""
+    steps = len(one.axis)
+    stamps = np.arange(STAMPS) * steps // STAMPS
+    lines = np.full((STAMPS, 3, 2), np.nan)
+    lines[:, 0], lines[:, 1] = one.trailing[stamps], one.leading[stamps]
+    x, y = rounded(lines.reshape(-1, 2).T)
+    reach = float(np.max(np.abs(one.axis[:, 0])))
+    figure.add_scatter(
+        x=rounded([-reach, reach]), y=[0, 0], mode="lines", line={"color": RULE, "width": 1, "dash": "dot"},
+        hoverinfo="skip", row=row, col=1,
+    )  # fmt: skip
+    figure.add_scatter(
+        x=x, y=y, mode="lines", line={"color": TRAIL, "width": 3}, connectgaps=False, hoverinfo="skip", row=row, col=1
+    )
+    left = rounded([-reach - BESIDE / 2] * 2)
+    figure.add_scatter(
+        x=left, y=rounded([0.3, 0.3 + unit]), mode="lines+markers+text", text=["", " 1 weight"],
+        textposition="middle right", line={"color": RULE, "width": 3},
+        marker={"symbol": "line-ew", "size": 8, "line": {"color": RULE, "width": 2}}, hoverinfo="skip", row=row, col=1,
+    )  # fmt: skip
+
+
+def _moving(one: DrawnBeat, unit: float) -> list[list[dict[str, Any]]]:
+    """What moves, for every frame: chord, leading edge, force, and the numbers of the instant."""
+    made = []
+    for number, at in enumerate(one.rows):
+        chord = rounded(np.stack([one.trailing[at], one.leading[at]], axis=1))
+        foot, tip = one.axis[at], one.axis[at] + unit * one.force[at]
+        arrow = rounded(np.stack([foot, tip], axis=1))
+        told = f"lift {one.force[at, 1]:.2f} weights, {one.specific_power[at]:.1f} W/kg"
+        made.append(
+            [
+                {"x": chord[0], "y": chord[1]},
+                {"x": chord[0][1:], "y": chord[1][1:]},
+                {"x": arrow[0], "y": arrow[1]},
+                {"x": [0], "y": [-BELOW + 0.15], "text": [f"t/T {number / len(one.rows):.2f}   {told}"]},
+            ]
+        )
+    return made
+
+
+def _looks(colour: str) -> list[dict[str, Any]]:
+    """How each of the moving traces looks."""
+    return [
+        {"mode": "lines", "line": {"color": colour, "width": 6}},
+        {"mode": "markers", "marker": {"color": colour, "size": 11, "line": {"color": BLACK, "width": 1.5}}},
+        {
+            "mode": "lines+markers",
+            "line": {"color": BLACK, "width": 2.5},
+            "marker": {"symbol": "arrow", "size": [0, 14], "angleref": "previous", "color": BLACK},
+        },
+        {"mode": "text", "textfont": {"size": 12}},
+    ]

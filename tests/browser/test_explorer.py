@@ -1,0 +1,218 @@
+"""The explorer in a browser: its numbers are `flapenv.evaluate`'s within a tenth of a second, and the wing beats."""
+
+import contextlib
+import json
+import logging
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+import flapenv
+from agents.explore_command import answering, listen
+from agents.explorer.app import make_app
+from flapenv.files import read_strokes
+
+pytestmark = pytest.mark.browser
+
+AT_ONCE = 0.1
+"""How soon a moved slider must change the numbers [s]."""
+WATCH = """() => {
+    window.waits = [];
+    let since = null;
+    for (const kind of ["keydown", "pointermove"])
+        document.getElementById("controls").addEventListener(kind, () => { since ??= performance.now(); }, true);
+    new MutationObserver(() => {
+        if (since !== null) window.waits.push((performance.now() - since) / 1000);
+        since = null;
+    }).observe(document.getElementById("numbers"),
+               { subtree: true, childList: true, characterData: true, attributes: true });
+}"""
+"""Measures from a key or a move of the pointer to the change of the numbers, in the page itself."""
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """A running explorer."""
+    logging.getLogger("werkzeug").setLevel(logging.ERROR)
+    with contextlib.closing(listen(0)) as listening:
+        server = answering(make_app().server, listening)
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        yield f"http://127.0.0.1:{listening.getsockname()[1]}/"
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+@pytest.fixture
+def opened(watched: Any, address: str) -> Iterator[Page]:
+    """The page at both widths; it must not complain nor ask any other server for anything, whatever a test does."""
+    page: Page = watched.page
+    page.goto(address)
+    page.wait_for_selector("#number-gap")
+    page.wait_for_selector("#figure-terms .main-svg")
+    yield page
+    assert watched.complaints == []
+    foreign = [one.url for one in watched.requests if not one.url.startswith((address, "data:", "blob:"))]
+    assert foreign == []
+
+
+def exact(page: Page) -> dict[str, Any]:
+    return json.loads(page.locator("#exact").text_content() or "")
+
+
+def changes(page: Page, act: Any) -> dict[str, Any]:
+    """The numbers after an act that changes them."""
+    before = page.locator("#exact").text_content()
+    act()
+    expect(page.locator("#exact")).not_to_have_text(str(before))
+    page.wait_for_timeout(300)  # the last of several answers
+    return exact(page)
+
+
+def agrees_with_evaluate(shown: dict[str, Any]) -> None:
+    found = flapenv.evaluate(shown["insect"], flapenv.Stroke(**shown["stroke"]))
+    assert shown["weight_support"] == found.weight_support
+    assert shown["specific_power"] == found.specific_power
+
+
+def shown_number(page: Page, name: str) -> str:
+    return page.locator(f"#number-{name}").inner_text()
+
+
+def test_the_page_shows_the_first_insect_and_fits(opened: Page) -> None:
+    shown = exact(opened)
+    agrees_with_evaluate(shown)
+    own = flapenv.evaluate("fruitfly")
+    assert shown["specific_power"] == pytest.approx(own.specific_power, rel=1e-9)
+    assert shown_number(opened, "specific_power") == f"{own.specific_power:#.5g}"
+    assert opened.locator(".figure .main-svg").first.is_visible()
+    width = opened.viewport_size["width"] if opened.viewport_size else 0
+    assert opened.evaluate("document.documentElement.scrollWidth") <= width
+    heights = opened.evaluate("[...document.querySelectorAll('.js-plotly-plot')].map(one => one.clientHeight)")
+    assert len(heights) == 4
+    assert min(heights) > 300
+
+
+def test_a_key_on_a_slider_changes_the_numbers_at_once(opened: Page) -> None:
+    opened.evaluate(WATCH)
+    for name in ("frequency", "flap_amplitude", "alpha_mid"):
+        thumb = opened.locator(f"#{name} [role=slider]")
+        thumb.focus()
+        for _ in range(5):
+            count = opened.evaluate("window.waits.length")
+            thumb.press("ArrowLeft")
+            for _ in range(20):  # until its answer is there, so that it is not taken for that of the next key
+                opened.wait_for_timeout(100)
+                if opened.evaluate("window.waits.length") > count:
+                    break
+    waits = opened.evaluate("window.waits")
+    assert len(waits) == 15
+    print(f"numbers follow a key after {1000 * median(waits):.0f} ms (median), {1000 * max(waits):.0f} ms (worst)")
+    assert median(waits) < AT_ONCE
+    shown = exact(opened)
+    agrees_with_evaluate(shown)
+    own = flapenv.load_insect("fruitfly").stroke
+    assert shown["stroke"]["frequency"] == pytest.approx(own.frequency - 5)
+
+
+def test_a_dragged_slider_takes_the_numbers_along(opened: Page) -> None:
+    opened.evaluate(WATCH)
+    thumb = opened.locator("#frequency [role=slider]")
+    thumb.scroll_into_view_if_needed()
+    box = thumb.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    opened.mouse.move(x, y)
+    opened.mouse.down()
+    seen = set()
+    for step in range(1, 21):
+        opened.mouse.move(x + 3 * step, y)
+        opened.wait_for_timeout(50)
+        seen.add(shown_number(opened, "specific_power"))
+    opened.mouse.up()
+    opened.wait_for_timeout(500)
+    assert len(seen) > 5
+    waits = opened.evaluate("window.waits")
+    print(f"numbers follow a drag after {1000 * median(waits):.0f} ms (median), {1000 * max(waits):.0f} ms (worst)")
+    assert median(waits) < AT_ONCE
+    shown = exact(opened)
+    agrees_with_evaluate(shown)
+    field = opened.locator("#frequency input").input_value()
+    assert shown["stroke"]["frequency"] == pytest.approx(float(field))
+    assert shown["stroke"]["frequency"] > flapenv.load_insect("fruitfly").stroke.frequency
+
+
+def test_a_typed_number_counts_and_one_out_of_range_does_not(opened: Page) -> None:
+    field = opened.locator("#alpha_mid input")
+
+    def type_angle() -> None:
+        field.fill("33.3")
+        field.press("Enter")
+
+    shown = changes(opened, type_angle)
+    agrees_with_evaluate(shown)
+    field.fill("900")
+    field.press("Enter")
+    opened.wait_for_timeout(500)
+    if opened.locator("#exact").count():  # the field took the nearest number it allows
+        agrees_with_evaluate(exact(opened))
+    else:
+        expect(opened.locator("#numbers [role=alert]")).to_contain_text("alpha_mid")
+
+
+def test_buttons_load_the_optimal_the_learned_and_the_own_stroke(opened: Page) -> None:
+    best = flapenv.optimum("fruitfly")
+    shown = changes(opened, lambda: opened.click("#load-optimal"))
+    assert shown["specific_power"] == pytest.approx(best.specific_power, rel=1e-6)
+    assert shown_number(opened, "gap") == "0.0000"
+    learned = changes(opened, lambda: opened.click("#load-learned"))
+    assert 0 < learned["gap"] < 0.01
+    own = changes(opened, lambda: opened.click("#load-own"))
+    assert own["specific_power"] == pytest.approx(flapenv.evaluate("fruitfly").specific_power, rel=1e-6)
+
+
+def test_the_wing_beats_until_it_is_paused(opened: Page) -> None:
+    figure = opened.locator("#figure-beat .js-plotly-plot")
+    figure.scroll_into_view_if_needed()
+    button = opened.get_by_label("pause the wingbeat")
+    expect(button).to_be_visible()
+    frames = set()
+    for _ in range(10):
+        frames.add(figure.get_attribute("data-frame"))
+        opened.wait_for_timeout(120)
+    assert len(frames) > 4
+    button.click()
+    expect(opened.get_by_label("play the wingbeat")).to_be_visible()
+    still = figure.get_attribute("data-frame")
+    opened.wait_for_timeout(400)
+    assert figure.get_attribute("data-frame") == still
+
+
+def test_the_downloaded_file_gives_the_same_stroke(opened: Page, tmp_path: Path) -> None:
+    shown = changes(opened, lambda: opened.click("#load-learned"))
+    with opened.expect_download() as download:
+        opened.click("#export")
+    assert download.value.suggested_filename == "fruitfly-stroke.json"
+    download.value.save_as(tmp_path / "stroke.json")
+    (read,) = read_strokes(tmp_path / "stroke.json")
+    assert read.insect.name == "fruitfly"
+    assert {name: getattr(read.stroke, name) for name in shown["stroke"]} == shown["stroke"]
+
+
+def test_a_wing_of_ones_own_is_typed_and_its_name_is_text(opened: Page) -> None:
+    opened.click("#insect")
+    opened.get_by_text("your own wing").last.click()
+    opened.wait_for_selector("#wing-name", state="visible")
+    opened.fill("#wing-name", "<img src=x onerror=alert(1)>")
+    opened.locator("#wing-name").press("Enter")
+    expect(opened.locator("#note")).to_contain_text("<img src=x onerror=alert(1)>: 100 mg")
+    shown = changes(opened, lambda: opened.fill("#mass", "80"))
+    assert shown["insect"] == "<img src=x onerror=alert(1)>"
+    assert shown["weight_support"] > 0
+    assert opened.locator("img[src=x]").count() == 0
