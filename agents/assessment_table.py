@@ -26,7 +26,7 @@ def assessment_table(results: Sequence[StrokeAssessment], called: str = LEARNED)
         ),
         ("", "support", "W/kg", "±", "W/kg", "W/kg", "%", "", "W/kg", "W/kg", "support", "", "%", "±", "%"),
     ]
-    rows += [_row(result) for result in results]
+    rows += [table_row(result) for result in results]
     lines = [text_table(rows, header_rows=2)]
     gaps = [result.gap for result in results if result.gap is not None]
     if gaps:
@@ -45,8 +45,8 @@ def assessment_table(results: Sequence[StrokeAssessment], called: str = LEARNED)
     return "\n".join(line for line in lines if line)
 
 
-def _row(result: StrokeAssessment) -> tuple[str, ...]:
-    """One insect."""
+def table_row(result: StrokeAssessment) -> tuple[str, ...]:
+    """The numbers of one insect, rounded as everywhere."""
     best = result.best
     return (
         result.insect.name,

@@ -163,7 +163,8 @@ def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
 
 
 def _keep(found: Any, kept: Path, command: str) -> None:
-    """Write results.json and the picture."""
+    """Write results.json, the picture and the report."""
+    from agents.report.of_run import report_of_evaluation
     from agents.run_folder import RESULT_PICTURE, RESULTS, versions, write_json
 
     verdict = found.verdict
@@ -171,6 +172,7 @@ def _keep(found: Any, kept: Path, command: str) -> None:
     about = {name: value for name, value in found.about.items() if name != "distance"}
     write_json(kept / RESULTS, {**about, "verdict": scores, **verdict.results, "versions": versions()})
     found.draw().savefig(kept / RESULT_PICTURE)
+    report_of_evaluation(found, kept, command)
 
 
 def shipped_table() -> str:

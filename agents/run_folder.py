@@ -12,8 +12,9 @@ from flapenv.whole_file import whole_file
 
 CONFIG, RESULTS, POLICY, CURVE = "config.json", "results.json", "policy.zip", "curve.csv"
 POLICY_TENSORS, POLICY_CARD = "policy.safetensors", "policy.json"
-CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD = "learning_curve.png", "learned.png", "tensorboard"
-FILES = (CONFIG, RESULTS, POLICY, POLICY_TENSORS, POLICY_CARD, CURVE, CURVE_PICTURE, RESULT_PICTURE, TENSORBOARD)
+CURVE_PICTURE, RESULT_PICTURE, REPORT, TENSORBOARD = "learning_curve.png", "learned.png", "report.html", "tensorboard"
+PICTURES = (CURVE_PICTURE, RESULT_PICTURE, REPORT)
+FILES = (CONFIG, RESULTS, POLICY, POLICY_TENSORS, POLICY_CARD, CURVE, *PICTURES, TENSORBOARD)
 RUNS = Path("runs")
 PACKAGES = ("flapenv", "gymnasium", "numpy", "scipy", "sb3-contrib", "stable-baselines3", "torch")
 

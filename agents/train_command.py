@@ -11,6 +11,8 @@ from flapenv.aero.checks import allowed
 
 CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "versions")
 """Of a config.json; `environment` and `versions` are told, not asked for."""
+UNCOUNTED = ("--quiet", "--no-report")
+"""Options that change nothing about what is learned."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -40,8 +42,8 @@ def parser() -> argparse.ArgumentParser:
             "  python train.py optimum hawkmoth             the best stroke and its proven bound, without learning\n"
             "  python train.py compare                      optimisers on the same strokes, with equal budgets\n\n"
             "a run folder holds config.json, results.json, the policy (policy.safetensors with its card policy.json,\n"
-            "and Stable-Baselines3's policy.zip), curve.csv, TensorBoard logs and two pictures; Ctrl-C stops early,\n"
-            "keeps what was learned and prints the comparison for it"
+            "and Stable-Baselines3's policy.zip), curve.csv, TensorBoard logs, two pictures and report.html, one\n"
+            "page that shows it all; Ctrl-C stops early, keeps what was learned and prints the comparison for it"
         ),
     )
     made.add_argument(
@@ -77,6 +79,7 @@ def parser() -> argparse.ArgumentParser:
         dest="settings",
         help="of the learner; repeatable",
     )
+    made.add_argument("--no-report", action="store_true", help="no report.html")
     made.add_argument("--quiet", action="store_true", help="no progress bar")
     return made
 
@@ -91,7 +94,7 @@ def train_command(arguments: list[str]) -> int:
         config = config_of(options, shlex.join(["python", "train.py", *what_counts(arguments)]))
         from agents.training import summary, train
 
-        result = train(config, options.out, progress=not options.quiet)
+        result = train(config, options.out, progress=not options.quiet, report=not options.no_report)
     except (ValueError, TypeError, OSError, ArithmeticError, MemoryError) as mistake:
         print(f"train.py: {str(mistake) or 'not enough memory'}", file=sys.stderr)
         return 1 if isinstance(mistake, ArithmeticError) else 2
@@ -100,7 +103,7 @@ def train_command(arguments: list[str]) -> int:
 
 
 def what_counts(arguments: list[str]) -> list[str]:
-    """The arguments that a run depends on: not where it is kept, nor whether it shows a bar."""
+    """The arguments that a run depends on: not where it is kept, nor what it shows."""
     kept, rest = [], iter(arguments)
     for one in rest:
         name, _, value = one.partition("=")
@@ -110,7 +113,7 @@ def what_counts(arguments: list[str]) -> list[str]:
             kept += [one, Path(next(rest, "")).name]  # not where on this machine it lies
         elif name in ("--config", "--wing"):
             kept.append(f"{name}={Path(value).name}")
-        elif one != "--quiet" and not one.startswith("--out="):
+        elif one not in UNCOUNTED and not one.startswith("--out="):
             kept.append(one)
     return kept
 

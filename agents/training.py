@@ -1,5 +1,6 @@
 """Train one policy by a preset, keep it, and judge it against its task's reference."""
 
+import dataclasses
 import json
 import re
 import sys
@@ -95,6 +96,7 @@ class TrainingResult:
         wingbeats: wingbeats trained on.
         seconds: spent training, without those spent watching it.
         interrupted: whether it was stopped before its budget was spent.
+        report: the HTML file that shows it; None where none was asked for or it could not be drawn.
     """
 
     out: Path
@@ -102,6 +104,7 @@ class TrainingResult:
     wingbeats: int
     seconds: float
     interrupted: bool
+    report: Path | None = None
 
 
 def make_model(preset: Preset, task: Task, seed: int) -> BaseAlgorithm:
@@ -112,16 +115,20 @@ def make_model(preset: Preset, task: Task, seed: int) -> BaseAlgorithm:
     return model
 
 
-def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = True) -> TrainingResult:
+def train(
+    config: TrainingConfig, out: Path | None = None, *, progress: bool = True, report: bool = True
+) -> TrainingResult:
     """Train from random weights; the last policy is the result, nothing is picked by its score.
 
-    Writes config.json at the start, the policy and the learning curve as it goes, and results.json and pictures at the
-    end. Ctrl-C ends the training early and keeps what was learned: everything is written for the policy as it is then.
+    Writes config.json at the start, the policy and the learning curve as it goes, and results.json, pictures and a
+    report at the end. Ctrl-C ends the training early and keeps what was learned: everything is written for the policy
+    as it is then.
 
     Args:
         config: what to train.
         out: the run's folder; see `open_run_folder`.
         progress: whether to show a progress bar.
+        report: whether to write the HTML report.
 
     Raises:
         FileExistsError: if the folder holds a run already.
@@ -172,7 +179,7 @@ def train(config: TrainingConfig, out: Path | None = None, *, progress: bool = T
     )
     save_results(config, result, model)
     draw_pictures(f"{config.name}, seed {config.seed}", task, result, flown(model))
-    return result
+    return dataclasses.replace(result, report=_reported(config, task, result)) if report else result
 
 
 def _require_finite(model: BaseAlgorithm) -> None:
@@ -231,10 +238,22 @@ def draw_pictures(title: str, task: Task, result: TrainingResult, policy: Predic
     task.draw(policy).savefig(result.out / RESULT_PICTURE)
 
 
+def _reported(config: TrainingConfig, task: Task, result: TrainingResult) -> Path | None:
+    """The report, beside results that are kept already: whatever goes wrong with drawing must not cost the run."""
+    from agents.report.of_run import report_of_run
+
+    try:
+        return report_of_run(config, task, result)
+    except Exception as mistake:
+        print(f"the report could not be drawn: {mistake}; the run is kept without it", file=sys.stderr)
+        return None
+
+
 def summary(result: TrainingResult) -> str:
-    """The verdict as text, with where the run lies."""
+    """The verdict as text, with where the run and its report lie."""
     rate = result.wingbeats / max(result.seconds, 1e-9)
+    report = "" if result.report is None else f"\nreport: {result.report}"
     return (
         f"{result.verdict.text}\n"
-        f"{result.wingbeats:,} wingbeats in {result.seconds:.0f} s ({rate:,.0f}/s); run kept in {result.out}"
+        f"{result.wingbeats:,} wingbeats in {result.seconds:.0f} s ({rate:,.0f}/s); run kept in {result.out}{report}"
     )

@@ -15,6 +15,7 @@ from flapenv.aero.checks import record, require_name, require_real
 from flapenv.case import wing_factors
 from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib
 from flapenv.insects import INSECTS, Insect, as_insect
+from flapenv.many_optima import many_optima
 from flapenv.optimum import optimum
 from flapenv.problem import HoverProblem, StrokeBox, as_problem
 from flapenv.tables import text_table
@@ -86,6 +87,37 @@ def trade_off(
         feasible=np.array([one.feasible for one in best]),
         specific_power=np.array([one.specific_power if one.feasible else np.nan for one in best]),
         lower_bound=np.array([np.nan if one.lower_bound is None else one.lower_bound for one in best]),
+    )
+
+
+def weight_front(
+    insect: Insect | str, values: Sequence[float] | None = None, problem: HoverProblem | str | None = None
+) -> TradeOff:
+    """`trade_off` against weight support in a fraction of its time, from `many_optima`: to 1e-6, and not confirmed.
+
+    Lifting w weights is an insect w times as heavy on the same wings, whose power is over a mass w times as large.
+
+    Args:
+        insect: one insect or a name of `INSECTS`.
+        values: what must be lifted, in weights, rising; those of `VARIED` where None.
+        problem: the problem; problem A where None.
+
+    Raises:
+        TypeError: for arguments of another kind.
+        ValueError: for an unknown name, or values that are not positive.
+    """
+    insect, problem = as_insect(insect), as_problem(problem)
+    given = VARIED["weight_support"][1] if values is None else values
+    weights = np.atleast_1d(np.asarray(require_real("values", given, 0.0, open_low=True)))
+    heavier = dataclasses.replace(insect, mass=insect.mass * weights, k_table=wing_factors(insect, problem.model))
+    best = many_optima(heavier, problem)
+    return TradeOff(
+        insect=insect.name,
+        varied="weight_support",
+        values=weights,
+        feasible=best.feasible,
+        specific_power=np.where(best.feasible, best.specific_power * weights, np.nan),
+        lower_bound=np.full(len(weights), np.nan) if best.lower_bound is None else best.lower_bound * weights,
     )
 
 

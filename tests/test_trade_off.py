@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from flapenv import load_insect, optimum
-from flapenv.trade_off import VARIED, draw_trade_offs, trade_off, trade_off_table
+from flapenv.trade_off import VARIED, draw_trade_offs, trade_off, trade_off_table, weight_front
 
 
 def test_power_goes_with_the_three_halves_of_the_lift_while_the_frequency_is_free() -> None:
@@ -32,6 +32,27 @@ def test_a_wing_without_a_table_keeps_the_tip_loss_of_its_own_weight() -> None:
     own = dataclasses.replace(load_insect("hawkmoth"), k_table=None)
     front = trade_off(own, values=(0.5, 1.0))
     assert front.specific_power[0] / front.specific_power[1] == pytest.approx(0.5**1.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("problem", ["free-frequency", "fixed-frequency", "profile-drag"])
+def test_the_quick_front_is_the_one_found_point_by_point(problem: str) -> None:
+    weights = (0.7, 1.0, 1.3)
+    quick, slow = weight_front("bumblebee", weights, problem), trade_off("bumblebee", values=weights, problem=problem)
+    np.testing.assert_array_equal(quick.feasible, slow.feasible)
+    np.testing.assert_allclose(quick.specific_power, slow.specific_power, rtol=1e-5)
+    np.testing.assert_allclose(quick.lower_bound, slow.lower_bound, rtol=1e-12)
+    assert quick.specific_power[1] == pytest.approx(optimum("bumblebee", problem).specific_power, rel=1e-5)
+
+
+def test_the_quick_front_of_a_wing_without_a_table_keeps_the_tip_loss_of_its_own_weight() -> None:
+    own = dataclasses.replace(load_insect("hawkmoth"), k_table=None)
+    front = weight_front(own, (0.5, 1.0))
+    np.testing.assert_allclose(front.specific_power, trade_off(own, values=(0.5, 1.0)).specific_power, rtol=1e-6)
+
+
+def test_no_front_begins_at_no_weight() -> None:
+    with pytest.raises(ValueError, match=r"values\[0\] = 0 is not allowed"):
+        weight_front("hawkmoth", (0.0, 1.0))
 
 
 def test_the_command_prints_and_draws_the_fronts(

@@ -70,7 +70,7 @@ def run_command(run: Run, out: Path) -> list[str]:
         words += [f"--{name.replace('_', '-')}", value]
     if run.wingbeats is not None:
         words += ["--wingbeats", str(run.wingbeats)]
-    return [*words, "--out", str(out), "--quiet"]
+    return [*words, "--out", str(out), "--quiet", "--no-report"]
 
 
 def is_there(run: Run, root: Path) -> bool:

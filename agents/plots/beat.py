@@ -83,7 +83,7 @@ def _rows(beats: Mapping[str, DrawnBeat]) -> tuple[go.Figure, int]:
     for row in range(1, count + 1):
         across = "x" if row == 1 else f"x{row}"
         figure.update_yaxes(scaleanchor=across, scaleratio=1, row=row, col=1)
-    figure.update_xaxes(title_text="along the arc at r̂₂ [mean chords], forward →", row=count, col=1)
+    figure.update_xaxes(title_text="arc at r̂₂ [mean chords], forward →", row=count, col=1)
     figure.update_layout(showlegend=False, margin={"t": TOP, "b": FOOT, "l": 14, "r": 14})
     return figure, inside + TOP + FOOT
 

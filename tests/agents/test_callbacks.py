@@ -39,7 +39,7 @@ def test_a_run_lowers_the_floor_saves_midway_and_keeps_the_last_policy(
         assert PPO.load(tmp_path / POLICY, device="cpu").num_timesteps == self.model.num_timesteps
 
     monkeypatch.setattr(Checkpoints, "save", watch)
-    train(TrainingConfig(preset=PRESET), tmp_path, progress=False)
+    train(TrainingConfig(preset=PRESET), tmp_path, progress=False, report=False)
     assert len(saved) >= CHECKPOINTS // 2
     assert 0 < saved[0] < SMALL.wingbeats
     assert floors[-1] < floors[0] < 0
@@ -47,7 +47,7 @@ def test_a_run_lowers_the_floor_saves_midway_and_keeps_the_last_policy(
 
 def test_the_learning_curve_watches_and_changes_nothing(tmp_path: Path) -> None:
     config = TrainingConfig(preset=PRESET)
-    train(config, tmp_path / "watched", progress=False)
+    train(config, tmp_path / "watched", progress=False, report=False)
     alone = make_model(PRESET, PRESET.make_task(), config.seed)
     alone.learn(SMALL.wingbeats, callback=Annealing(SMALL))
     watched = PPO.load(tmp_path / "watched" / POLICY, device="cpu")

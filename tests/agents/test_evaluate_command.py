@@ -18,7 +18,7 @@ TINY = GradientSettings(wingbeats=9_000, rows=32)
 @pytest.fixture(scope="module")
 def hover(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("hover") / "run"
-    train(TrainingConfig(preset=Preset(task="hover", settings=TINY), seed=4), folder, progress=False)
+    train(TrainingConfig(preset=Preset(task="hover", settings=TINY), seed=4), folder, progress=False, report=False)
     return folder
 
 
@@ -28,7 +28,7 @@ def wings(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("agents.tasks.random_wings.TEST_WINGS", 200)
         preset = Preset(task="random-wings", arguments={"pool_size": 512}, settings=TINY)
-        train(TrainingConfig(preset=preset), folder, progress=False)
+        train(TrainingConfig(preset=preset), folder, progress=False, report=False)
     return folder
 
 

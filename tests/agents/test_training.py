@@ -33,7 +33,7 @@ def test_a_run_writes_everything_needed_to_repeat_and_judge_it(tmp_path: Path) -
     result = train(TrainingConfig(preset=tiny(), seed=3), tmp_path, progress=False)
     names = {path.name for path in tmp_path.iterdir()}
     files = {"config.json", "results.json", "policy.zip", "policy.safetensors", "policy.json", "curve.csv"}
-    assert names == files | {"tensorboard", "learning_curve.png", "learned.png"}
+    assert names == files | {"tensorboard", "learning_curve.png", "learned.png", "report.html"}
     assert any((tmp_path / "tensorboard").glob("events.out.tfevents.*"))
 
     config = json.loads((tmp_path / "config.json").read_text(encoding="utf-8"))
@@ -61,11 +61,13 @@ def test_a_run_writes_everything_needed_to_repeat_and_judge_it(tmp_path: Path) -
     assert int(rows[-1]["wingbeats"]) == 4096
     assert float(rows[-1]["mean_gap"]) * 100 == pytest.approx(results["mean_gap_percent"], rel=1e-4)
     assert "4,096 wingbeats" in summary(result)
+    assert result.report == tmp_path / "report.html"
+    assert summary(result).endswith(f"report: {result.report}")
 
 
 def test_the_same_seed_learns_the_same_and_what_is_saved_is_the_last_policy(tmp_path: Path) -> None:
     for name, seed in (("a", 1), ("b", 1), ("c", 2)):
-        train(TrainingConfig(preset=tiny(), seed=seed), tmp_path / name, progress=False)
+        train(TrainingConfig(preset=tiny(), seed=seed), tmp_path / name, progress=False, report=False)
     assert strokes(tmp_path / "a") == strokes(tmp_path / "b")
     assert strokes(tmp_path / "a") != strokes(tmp_path / "c")
 
@@ -84,7 +86,7 @@ def test_the_same_seed_learns_the_same_and_what_is_saved_is_the_last_policy(tmp_
 @pytest.mark.filterwarnings("ignore:.*no stroke of the box:UserWarning")
 def test_an_infeasible_insect_is_trained_and_reported(tmp_path: Path) -> None:
     preset = tiny(insects=["ladybird", "hoverfly"], problem={"box": {"frequency_ratio": (0.3, 0.45)}})
-    text = summary(train(TrainingConfig(preset=preset), tmp_path, progress=False))
+    text = summary(train(TrainingConfig(preset=preset), tmp_path, progress=False, report=False))
     assert "ladybird is INFEASIBLE" in text
     results = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))
     assert results["infeasible"] == ["ladybird"]
@@ -96,7 +98,7 @@ def test_an_interrupt_before_the_first_wingbeat_still_prints_the_comparison(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("agents.vec_env.GymnasiumVecEnv.reset", lambda _: signal.raise_signal(signal.SIGINT))
-    result = train(TrainingConfig(preset=tiny()), tmp_path, progress=False)
+    result = train(TrainingConfig(preset=tiny()), tmp_path, progress=False, report=False)
     assert result.interrupted
     assert result.wingbeats == 0
     assert "hawkmoth" in summary(result)
@@ -106,7 +108,7 @@ def test_an_interrupt_before_the_first_wingbeat_still_prints_the_comparison(
 def test_a_budget_of_one_update_learns_something_and_writes_one_point(tmp_path: Path) -> None:
     preset = Preset(task="hover", settings=PPOSettings(wingbeats=512, rows=512, minibatch=128, epochs=1))
     weights = make_model(preset, preset.make_task(), 0).policy.state_dict()
-    train(TrainingConfig(preset=preset), tmp_path, progress=False)
+    train(TrainingConfig(preset=preset), tmp_path, progress=False, report=False)
     trained = PPO.load(tmp_path / "policy.zip", device="cpu").policy.state_dict()
     assert any((weights[name] != trained[name]).any() for name in weights)
     assert len((tmp_path / "curve.csv").read_text(encoding="utf-8").splitlines()) == 2
@@ -137,7 +139,7 @@ def test_what_no_file_can_hold_is_refused_before_anything_is_made(tmp_path: Path
         stroke=Stroke(frequency=120.0, flap_amplitude=1.0, pitch_amplitude=1.0),
     )
     with pytest.raises(TypeError, match="the planform of smooth is a function, which cannot be written to a file"):
-        train(TrainingConfig(preset=tiny(insects=[smooth])), tmp_path / "run", progress=False)
+        train(TrainingConfig(preset=tiny(insects=[smooth])), tmp_path / "run", progress=False, report=False)
     assert not (tmp_path / "run").exists()
 
 
@@ -148,7 +150,7 @@ def test_a_measured_wing_is_trained_on_and_comes_back_from_its_config(tmp_path: 
         wing=Wing.from_table([0, 0.004, 0.010, 0.015], [0.003, 0.005, 0.0045, 0.001], mass=4e-7),
         stroke=Stroke(frequency=120.0, flap_amplitude=1.0, pitch_amplitude=1.0),
     )
-    train(TrainingConfig(preset=tiny(insects=[measured])), tmp_path, progress=False)
+    train(TrainingConfig(preset=tiny(insects=[measured])), tmp_path, progress=False, report=False)
     config = json.loads((tmp_path / "config.json").read_text(encoding="utf-8"))
     assert HoverTask(insects=config["task"]["insects"]).insects == (measured,)
 
@@ -167,9 +169,25 @@ def test_the_reward_scale_reaches_the_learner_and_nothing_else(tmp_path: Path) -
     np.testing.assert_allclose(rewards[0], 0.5 * rewards[1], rtol=1e-6)
 
 
+def test_a_report_that_cannot_be_drawn_does_not_cost_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def fails(*_: object) -> None:
+        raise RuntimeError("no ink")
+
+    monkeypatch.setattr("agents.report.of_run.report_of_run", fails)
+    result = train(TrainingConfig(preset=tiny(insects="hawkmoth")), tmp_path, progress=False)
+    assert (tmp_path / "results.json").exists()
+    assert result.report is None
+    assert "report: " not in summary(result)
+    assert "the report could not be drawn: no ink; the run is kept without it" in capsys.readouterr().err
+
+
 def test_a_gradient_agent_learns_through_the_same_code(tmp_path: Path) -> None:
     settings = GradientSettings(wingbeats=30_000, rows=32)
-    result = train(TrainingConfig(preset=Preset(task="hover", settings=settings)), tmp_path, progress=False)
+    result = train(
+        TrainingConfig(preset=Preset(task="hover", settings=settings)), tmp_path, progress=False, report=False
+    )
     assert result.verdict.mean is not None
     assert result.verdict.mean < 0.5
     assert load_policy(tmp_path)[1].algorithm == "gradient"

@@ -173,7 +173,7 @@ def test_the_command_of_a_run_is_the_one_a_reader_would_type(tmp_path: Path) -> 
     assert words[0] == sys.executable
     assert Path(words[1]).name == "train.py"
     assert Path(words[1]).is_file()
-    said = f"--preset hover-ppo --seed 3 --wingbeats 100 --out {tmp_path} --quiet"
+    said = f"--preset hover-ppo --seed 3 --wingbeats 100 --out {tmp_path} --quiet --no-report"
     assert " ".join(words[2:]) == said
     assert "--wingbeats" not in run_command(Run(preset="hover-ppo", seed=3), tmp_path)
 

@@ -37,7 +37,7 @@ def test_quartiles_and_wingbeats_to_solve_are_read_off_the_traces() -> None:
 def test_the_command_compares_a_policy_with_optimisers_and_keeps_everything(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False)
+    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False, report=False)
     arguments = ["compare", "--insects", "hawkmoth", "--seeds", "2", "--wingbeats", "300", "--quiet"]
     out = tmp_path / "out"
     assert command.main([*arguments, "--policy", str(tmp_path / "run"), "--out", str(out)]) == 0
@@ -61,7 +61,7 @@ def test_random_wings_and_who_cannot_hover_are_told_apart() -> None:
         wingbeats=128,
         seeds=1,
     )
-    result = compete(prepare(config), progress=False)
+    result = compete(prepare(config), progress=False, report=False)
     assert result.left_out == ("fruitfly",)
     assert [insect.name for insect in result.insects] == ["cranefly", "test-0-0", "test-0-1"]
     assert "left out, cannot hover in this box or lack a wing mass: fruitfly" in competition_table(result)
@@ -94,7 +94,7 @@ def test_bad_input_ends_with_one_line_and_leaves_no_folder(
 
 
 def test_a_policy_of_another_problem_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False)
+    train(TrainingConfig(preset=TINY), tmp_path / "run", progress=False, report=False)
     arguments = ["compare", "--quiet", "--insects", "hawkmoth", "--policy", str(tmp_path / "run")]
     arguments += ["--out", str(tmp_path / "out")]
     assert command.main([*arguments, "--problem", "profile-drag"]) == 2
@@ -113,7 +113,7 @@ def test_wings_without_a_mass_are_left_out_of_the_problem_that_needs_one() -> No
     config = CompetitionConfig(
         problem="inertial", insects=["fruitfly", "cranefly"], competitors=["random search"], wingbeats=64, seeds=1
     )
-    result = compete(prepare(config), progress=False)
+    result = compete(prepare(config), progress=False, report=False)
     assert result.left_out == ("cranefly",)
 
 

@@ -56,7 +56,7 @@ def test_a_run_is_judged_alike_with_its_learner_and_from_its_file(
     monkeypatch.setattr(adapt, "DRAWS", 16)
     few = {"wingbeats": 640, "rows": 16, "memory": 8, "epochs": 1}
     preset = PRESETS["adapt-recurrentppo"].changed({"insects": ["hawkmoth", "cranefly"]}, few)
-    result = train(TrainingConfig(preset=preset, seed=1), tmp_path, progress=False)
+    result = train(TrainingConfig(preset=preset, seed=1), tmp_path, progress=False, report=False)
     task = preset.make_task()
     actor, card = load_policy(tmp_path)
     assert (card.algorithm, card.memory) == ("RecurrentPPO", 8)

@@ -1,0 +1,157 @@
+"""The tables of a report: the terminal's numbers, rounded by the same code."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from agents.assessment_table import number, table_row
+from agents.plots.sensitivities import STEPS, step_costs
+from flapenv.aero.checks import record
+from flapenv.aero.parameters import STROKE_PARAMETERS
+from flapenv.aero.stroke import Stroke
+from flapenv.assessment import StrokeAssessment
+from flapenv.assessment.validity import Quantity
+
+
+@record
+class Table:
+    """A table of texts with a header above and one to the left.
+
+    Attributes:
+        caption: what it shows.
+        columns: name and unit of each, the first that of the rows' names.
+        rows: their name first.
+        note: below it; empty for none.
+    """
+
+    caption: str
+    columns: tuple[tuple[str, str], ...]
+    rows: tuple[tuple[str, ...], ...]
+    note: str = ""
+
+
+def results_table(strokes: Sequence[StrokeAssessment], called: str) -> Table:
+    """The terminal's table, number and uncertainty in one cell.
+
+    Args:
+        strokes: one an insect.
+        called: what the strokes are, in a word.
+    """
+    rows = []
+    for one in strokes:
+        name, weight, power, unsure, *middle, saved, saved_unsure, by_model = [cell for cell in table_row(one) if cell]
+        saved_text = saved if one.saving_to_cfd is None else f"{saved} ± {saved_unsure}"
+        rows.append((name, weight, f"{power} ± {unsure}", *middle, saved_text, by_model))
+    return Table(
+        caption=f"Each insect's {called} stroke beside the optimum, the proven bound and its own stroke",
+        columns=(
+            ("insect", ""),
+            ("weight support", "Λ"),
+            (f"{called} power", "W/kg"),
+            ("optimum", "W/kg"),
+            ("proven bound", "W/kg"),
+            ("gap to the optimum", "%"),
+            ("own stroke: CFD", "W/kg"),
+            ("own stroke: model", "W/kg"),
+            ("own stroke: weight support", "Λ"),
+            ("saved of CFD's", "%"),
+            ("saved of the model's", "%"),
+        ),
+        rows=tuple(rows),
+        note=(
+            "±: the model's own error against CFD at the insect's stroke; without CFD, the root mean square of the "
+            "eight insects'. Saved: of the own stroke's power by CFD and by this model, each stroke beaten as fast as "
+            "carries exactly the weight."
+        ),
+    )
+
+
+def models_table(strokes: Sequence[StrokeAssessment]) -> Table:
+    """What every model says is saved of the own stroke's power, both carrying the weight."""
+    models = list(dict.fromkeys(ranking.model for one in strokes for ranking in one.rankings))
+    rows = []
+    for one in strokes:
+        said = {}
+        for ranking in one.rankings:
+            text = number(ranking.saving, 1, percent=True)
+            said[ranking.model] = text if ranking.survives else f"✗ {text}"
+        rows.append((one.insect.name, number(one.saving, 1, percent=True), *(said.get(model, "–") for model in models)))
+    return Table(
+        caption="Power saved of the insect's own stroke under other models, both strokes carrying the weight there",
+        columns=(("insect", ""), ("this model", "%"), *((model, "%") for model in models)),
+        rows=tuple(rows),
+        note=(
+            "✗: the ranking does not survive, the insect's own stroke needs less or one of the two cannot carry the "
+            "weight. –: the model has no constants for this insect or no answer for its strokes. “positive power” is "
+            "paid with the wings' inertia and gives nothing back."
+        ),
+    )
+
+
+def outside_table(strokes: Sequence[StrokeAssessment]) -> Table:
+    """What no CFD case covers."""
+    return _quantities_table("What no CFD case covers", "covered", {one.insect.name: one.outside for one in strokes})
+
+
+def beyond_table(strokes: Sequence[StrokeAssessment]) -> Table:
+    """What lies beyond the problem's box, so that a gap may be negative."""
+    caption = "What lies beyond the problem's box, where the optimum was not sought"
+    return _quantities_table(caption, "box", {one.insect.name: one.beyond_box for one in strokes})
+
+
+def _quantities_table(caption: str, allowed: str, outside: Mapping[str, Sequence[Quantity]]) -> Table:
+    """A row for each quantity and range with the insects it holds for, those that most share first."""
+    found: dict[tuple[str, str], dict[str, float]] = {}
+    for insect, quantities in outside.items():
+        for quantity in quantities:
+            found.setdefault((quantity.name, quantity.range_text), {})[insect] = quantity.value
+    rows = []
+    for (name, where), values in sorted(found.items(), key=lambda item: -len(item[1])):
+        low, high = (f"{end(values.values()):.4g}" for end in (min, max))
+        who = "all" if len(values) == len(outside) > 1 else ", ".join(values)
+        rows.append((name, low if low == high else f"{low} to {high}", where, who))
+    columns = (("quantity", ""), ("here", ""), (allowed, ""), ("of", ""))
+    return Table(caption=caption, columns=columns, rows=tuple(rows))
+
+
+def strokes_table(strokes: Mapping[str, Stroke]) -> Table:
+    """The six numbers of some strokes.
+
+    Args:
+        strokes: by label.
+    """
+    rows = []
+    for name, parameter in STROKE_PARAMETERS.items():
+        values = [float(getattr(stroke, name)) for stroke in strokes.values()]
+        if parameter.unit == "rad":
+            cells, unit = [f"{math.degrees(value):.2f}" for value in values], "°"
+        else:
+            cells, unit = [f"{value:.4g}" for value in values], parameter.unit
+        rows.append((f"{parameter.symbol} [{unit}]" if unit else parameter.symbol, *cells))
+    return Table(
+        caption="The strokes' six numbers",
+        columns=(("", ""), *((label, "") for label in strokes)),
+        rows=tuple(rows),
+    )
+
+
+def steps_table(strokes: Sequence[StrokeAssessment]) -> Table:
+    """What a step from each insect's optimum costs, and at which bounds of the box the optimum lies."""
+    rows = []
+    for one in strokes:
+        costs, sides = step_costs(one.best), dict(one.best.active_bounds)
+        marks = {"upper": " ↑", "lower": " ↓"}
+        cells = [
+            f"{100 * costs[name]:.2f}{marks.get(sides.get(name, ''), '')}" if name in costs else "none"
+            for name in STEPS
+        ]
+        rows.append((one.insect.name, *cells))
+    return Table(
+        caption="What a small step from the optimum costs while the weight stays carried, in percent of the power",
+        columns=(("insect", ""), *((step.text, "%") for step in STEPS.values())),
+        rows=tuple(rows),
+        note=(
+            "↑ ↓: the optimum lies at the upper or lower bound of the box, and the step leads back into it. 0.00 "
+            "without an arrow: the optimum lies inside, where a small step costs nothing to first order. Λ: what "
+            "carrying more costs."
+        ),
+    )

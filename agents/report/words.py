@@ -1,0 +1,118 @@
+"""The summary of a report, in sentences."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from agents.assessment_table import ranking_sentence
+from agents.report.content import ReportContent
+from flapenv.assessment import StrokeAssessment
+
+CARRIED = 0.995
+"""Weight support from which a stroke is said to carry the weight [-]."""
+
+
+def summary(content: ReportContent) -> list[str]:
+    """What was found, a sentence or two each, the most important first."""
+    verdict, strokes = content.verdict, content.verdict.assessments
+    told = [*_powers(strokes, content.called), *_savings(strokes)] if strokes else []
+    if verdict.mean is not None and verdict.worst is not None:
+        told.append(_distance(content, verdict.mean, verdict.worst))
+    return [*told, *_rankings(strokes, content.called), *_infeasible(strokes, content.called), *_outside(strokes)]
+
+
+def _powers(strokes: Sequence[StrokeAssessment], called: str) -> list[str]:
+    """What the strokes carry and need."""
+    power = span([one.specific_power for one in strokes], 2)
+    weight = span([one.weight_support for one in strokes], 4)
+    error = span([100 * one.uncertainty for one in strokes], 0)
+    who = strokes[0].insect.name if len(strokes) == 1 else f"{len(strokes)} insects"
+    own = all(one.stroke == one.insect.stroke for one in strokes)
+    end = "" if own else ", is taken as the uncertainty of these powers: nobody has run CFD on these strokes"
+    told = [
+        f"The {called} strokes of {who} carry {weight} of the weight with {power} W/kg. The model's own error against "
+        f"CFD at the insects' own strokes{f' is {error} %' if own else f', {error} %'}{end}."
+    ]
+    light = [one.insect.name for one in strokes if one.best.feasible and one.weight_support < CARRIED]
+    if light:
+        told.append(f"The full weight is not carried by {', '.join(light)}.")
+    return told
+
+
+def _savings(strokes: Sequence[StrokeAssessment]) -> list[str]:
+    """What is saved of the own strokes' power, and where that is less than is known."""
+    others = [one for one in strokes if one.stroke != one.insect.stroke]
+    told = []
+    known = [
+        (one.insect.name, saving, unsure)
+        for one in others
+        if (saving := one.saving_to_cfd) is not None and (unsure := one.saving_uncertainty) is not None
+    ]
+    if known:
+        doubted = [name for name, saving, unsure in known if saving <= unsure]
+        which = f"for all but {', '.join(doubted)}" if doubted else "each"
+        told.append(
+            f"That saves {span([100 * saving for _, saving, _ in known], 0)} % of the power that CFD found for the own "
+            f"strokes, ± {span([100 * unsure for *_, unsure in known], 0)} points: {which} more than that "
+            "uncertainty."
+        )
+    equal = [100 * one.saving for one in others if one.saving is not None]
+    if equal:
+        published = span([100 * one.saving_as_published for one in others], 0)
+        told.append(
+            f"Model against model it saves {span(equal, 0)} % where both strokes beat as fast as carries exactly the "
+            f"weight, and {published} % of the own strokes as published, which carry "
+            f"{span([one.own_weight_support for one in others], 2)} of the weight in this model."
+        )
+    return told
+
+
+def _distance(content: ReportContent, mean: float, worst: float) -> str:
+    """How far it is from the reference, and the reference from what is proven."""
+    distance = content.distance
+    said = f"{distance[:1].upper()}{distance[1:]}: mean {100 * mean:.3f} %, worst {100 * worst:.3f} %."
+    proven = [
+        100 * gap
+        for one in content.verdict.assessments
+        if one.best.feasible and (gap := one.best.gap_to_bound) is not None
+    ]
+    if proven:
+        bound = "a proven bound, below which no stroke of the box hovers"
+        said += f" The optimum itself lies {span(proven, 1)} % above {bound}."
+    return said
+
+
+def _rankings(strokes: Sequence[StrokeAssessment], called: str) -> list[str]:
+    """Whether the strokes need less than the insects' own under other models, too."""
+    sentence = ranking_sentence(strokes, called)
+    if not sentence:
+        return []
+    return [
+        f"Does that hang on the model? {sentence[0].upper()}{sentence[1:]}. The other models are other force "
+        "coefficients and, where the wing's mass is known, power without springs; both strokes carry the weight in "
+        "each."
+    ]
+
+
+def _infeasible(strokes: Sequence[StrokeAssessment], called: str) -> list[str]:
+    """Insects that cannot hover in the box."""
+    return [
+        f"{one.insect.name} cannot hover here: no stroke of the box supports more than "
+        f"{one.best.max_weight_support:.3f} of its weight; {called}: {one.weight_support:.3f}."
+        for one in strokes
+        if not one.best.feasible
+    ]
+
+
+def _outside(strokes: Sequence[StrokeAssessment]) -> list[str]:
+    """What no CFD case covers, in a line; the list has a section of its own."""
+    names = list(dict.fromkeys(quantity.name for one in strokes for quantity in one.outside))
+    if not names:
+        return []
+    return [f"Read it with care: {', '.join(names)}: outside of what the eight CFD cases cover, see the list below."]
+
+
+def span(values: Sequence[float], digits: int) -> str:
+    """Numbers as the range they span, "8.56 to 29.92", or as the one they all are."""
+    low, high = (f"{round(float(end), digits) + 0.0:.{digits}f}" for end in (np.min(values), np.max(values)))
+    return low if low == high else f"{low} to {high}"
