@@ -17,6 +17,7 @@ def test_the_tutorial_runs_from_the_first_block_to_the_last(tmp_path: Path, monk
     assert isinstance(result, TrainingResult)
     assert result.verdict.mean is not None
     assert result.verdict.mean < 0.01, "it promises five hundredths of a per cent"
+    assert (tmp_path / "runs" / "tutorial" / "report.html").is_file()
     assert (tmp_path / "hawkmoth.gif").stat().st_size > 10_000
     printed = run_shell(PAGE)
     assert "random-wings" in printed["python train.py evaluate --list"]
