@@ -20,6 +20,8 @@ YOURS = "yours"
 """Label of the stroke that the sliders say."""
 SAME_WEIGHT = 1e-3
 """Weight supports that differ by less need no remark [-]."""
+NO_SAVING = 1e-6
+"""A smaller saving is that of the own stroke itself, up to the rounding of the sliders [-]."""
 
 
 def numbers(case: Case, stroke: Stroke) -> list[Any]:
@@ -88,7 +90,7 @@ def remarks(case: Case, stroke: Stroke) -> list[Any]:
     if judged.flags:
         found.append(f"outside of what CFD has checked: {'; '.join(judged.flags)}")
     others = rankings(case.insect, stroke, case.problem.model)
-    if stroke != case.insect.stroke and others:
+    if others and abs(judged.saving or 0.0) > NO_SAVING:
         against = [one.model for one in others if not one.survives]
         kept = len(others) - len(against)
         said = (

@@ -96,7 +96,8 @@ def _case_callbacks(app: Dash, cases: Cases) -> None:
         try:
             case = cases.known(key)
             label = require_name("stroke", str(ctx.triggered_id).removeprefix("load-"), BUTTONS)
-            return list(shown_stroke(case.strokes()[label], case.insect))
+            with cases.one_at_a_time:
+                return list(shown_stroke(case.strokes()[label], case.insect))
         except MISTAKES:  # the numbers say what is wrong
             return [no_update] * len(names)
 
@@ -142,8 +143,9 @@ def _stroke_callbacks(app: Dash, cases: Cases) -> None:
             case = cases.known(key)
             label = require_name("beside", beside, BUTTONS)
             stroke = read_stroke(moved, case.insect)
-            drawn = figures(case, stroke, label)
-            return [remarks(case, stroke), *(part for one in drawn for part in (one, height(one)))]
+            with cases.one_at_a_time:
+                told, drawn = remarks(case, stroke), figures(case, stroke, label)
+            return [told, *(part for one in drawn for part in (one, height(one)))]
         except MISTAKES:  # the numbers say what is wrong
             return unchanged
 

@@ -94,6 +94,8 @@ class Cases:
             self.insects = {name: extra.insect, **self.insects}
         self._solved: OrderedDict[str, Case] = OrderedDict()
         self._lock = threading.Lock()
+        self.one_at_a_time = threading.Lock()
+        """Held by what takes long, or silences warnings, which Python does for all threads together."""
 
     def solve(self, name: object, own: object, problem: object) -> tuple[str, Case]:
         """The case that the page asks for, with its key; solved where it is asked for the first time.
@@ -115,7 +117,9 @@ class Cases:
         key = json.dumps([name, own if name == OWN_WING else None, chosen.name], ensure_ascii=True)
         with self._lock:
             case = self._solved.get(key)
-        case = case or Case(insect, chosen)
+        if case is None:
+            with self.one_at_a_time:
+                case = Case(insect, chosen)
         with self._lock:
             self._solved[key] = case
             self._solved.move_to_end(key)

@@ -1,5 +1,7 @@
 """The beating wing: sections with the force on them, frame by frame, which beat.js plays."""
 
+import copy
+import functools
 import html
 from collections.abc import Mapping
 from pathlib import Path
@@ -44,39 +46,46 @@ def beat(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel, frame
     beats = {label: drawn_beat(insect, stroke, model=model, frames=frames) for label, stroke in strokes.items()}
     longest = max(float(np.max(np.hypot(*one.force[one.rows].T))) for one in beats.values())
     unit = LONGEST / max(longest, 1.0)  # mean chords for one weight
-    figure, inside = _rows(beats)
+    traces: list[dict[str, Any]] = []
     moving: list[int] = []
     parts: list[list[list[dict[str, Any]]]] = []
     for row, (label, style) in enumerate(line_styles(beats).items(), start=1):
-        one = beats[label]
-        _still(figure, row, one, unit)
-        made = _moving(one, unit)
-        for number, looks in enumerate(_looks(style.colour)):
-            moving.append(len(figure.data))
-            figure.add_scatter(**made[0][number], **looks, hoverinfo="skip", row=row, col=1)
-        parts.append(made)
+        one, number = beats[label], "" if row == 1 else str(row)
+        axes = {"type": "scatter", "xaxis": f"x{number}", "yaxis": f"y{number}", "hoverinfo": "skip"}
+        traces += [axes | piece for piece in _still(one, unit)]
+        parts.append(_moving(one, unit))
+        pieces = zip(parts[-1][0], _looks(style.colour), strict=True)
+        drawn = [axes | piece | looks for piece, looks in pieces]
+        moving += range(len(traces), len(traces) + len(drawn))
+        traces += drawn
     played = [[piece for made in parts for piece in made[frame]] for frame in range(frames)]
     kept = [{key: [piece.get(key) for piece in pieces] for key in ("x", "y", "text")} for pieces in played]
-    figure.update_layout(meta={"beat": {"traces": moving, "seconds": SECONDS, "frames": kept}}, height=inside)
-    return figure
+    layout = _fitted(beats) | {"meta": {"beat": {"traces": moving, "seconds": SECONDS, "frames": kept}}}
+    return go.Figure(data=traces, layout=layout)
 
 
-def _rows(beats: Mapping[str, DrawnBeat]) -> tuple[go.Figure, int]:
-    """Empty rows with one scale for all, and the figure's height [px]."""
-    count = len(beats)
+def _fitted(beats: Mapping[str, DrawnBeat]) -> dict[str, Any]:
+    """The layout of the rows with their titles, and one scale for all."""
+    layout = copy.deepcopy(_rows(len(beats)))
+    reach = max(float(np.max(np.abs(one.axis[:, 0]))) for one in beats.values()) + BESIDE
+    for number, (label, one) in enumerate(beats.items(), start=1):
+        rate = one.motion.frequency
+        title = f"<b>{html.escape(label)}</b>: {rate:.4g} Hz, shown {rate * SECONDS:.0f}× slower"
+        layout["annotations"][number - 1]["text"] = title
+        layout[f"xaxis{number}" if number > 1 else "xaxis"]["range"] = rounded([-reach, reach])
+    return layout
+
+
+@functools.lru_cache(maxsize=8)
+def _rows(count: int) -> dict[str, Any]:
+    """The layout of empty rows, which takes Plotly longer than everything else."""
     inside = count * ROW + (count - 1) * GAP
-    rates = {label: one.motion.frequency for label, one in beats.items()}
-    titles = [
-        f"<b>{html.escape(label)}</b>: {rate:.4g} Hz, shown {rate * SECONDS:.0f}× slower"
-        for label, rate in rates.items()
-    ]
-    figure = make_subplots(
-        rows=count, cols=1, shared_xaxes=True, vertical_spacing=GAP / inside if count > 1 else 0, subplot_titles=titles
-    )
+    spacing = GAP / inside if count > 1 else 0
+    titles = [str(number) for number in range(count)]
+    figure = make_subplots(rows=count, cols=1, shared_xaxes=True, vertical_spacing=spacing, subplot_titles=titles)
     styled(figure, inside + TOP + FOOT)
     figure.update_annotations(x=0, xanchor="left", font_size=13)
-    reach = max(float(np.max(np.abs(one.axis[:, 0]))) for one in beats.values()) + BESIDE
-    figure.update_xaxes(range=rounded([-reach, reach]), zeroline=False, showgrid=False)
+    figure.update_xaxes(zeroline=False, showgrid=False)
     figure.update_yaxes(
         range=[-BELOW, ABOVE], showticklabels=False, ticks="", showline=False, zeroline=False, showgrid=False
     )
@@ -85,30 +94,35 @@ def _rows(beats: Mapping[str, DrawnBeat]) -> tuple[go.Figure, int]:
         figure.update_yaxes(scaleanchor=across, scaleratio=1, row=row, col=1)
     figure.update_xaxes(title_text="arc at r̂₂ [mean chords], forward →", row=count, col=1)
     figure.update_layout(showlegend=False, margin={"t": TOP, "b": FOOT, "l": 14, "r": 14})
-    return figure, inside + TOP + FOOT
+    layout: dict[str, Any] = figure.to_plotly_json()["layout"]
+    return layout
 
 
-def _still(figure: go.Figure, row: int, one: DrawnBeat, unit: float) -> None:
+def _still(one: DrawnBeat, unit: float) -> list[dict[str, Any]]:
     """The path, sections at equal times, and the scale of the arrows."""
-    steps = len(one.axis)
-    stamps = np.arange(STAMPS) * steps // STAMPS
+    stamps = np.arange(STAMPS) * len(one.axis) // STAMPS
     lines = np.full((STAMPS, 3, 2), np.nan)
     lines[:, 0], lines[:, 1] = one.trailing[stamps], one.leading[stamps]
     x, y = rounded(lines.reshape(-1, 2).T)
     reach = float(np.max(np.abs(one.axis[:, 0])))
-    figure.add_scatter(
-        x=rounded([-reach, reach]), y=[0, 0], mode="lines", line={"color": RULE, "width": 1, "dash": "dot"},
-        hoverinfo="skip", row=row, col=1,
-    )  # fmt: skip
-    figure.add_scatter(
-        x=x, y=y, mode="lines", line={"color": TRAIL, "width": 3}, connectgaps=False, hoverinfo="skip", row=row, col=1
-    )
-    left = rounded([-reach - BESIDE / 2] * 2)
-    figure.add_scatter(
-        x=left, y=rounded([0.3, 0.3 + unit]), mode="lines+markers+text", text=["", " 1 weight"],
-        textposition="middle right", line={"color": RULE, "width": 3},
-        marker={"symbol": "line-ew", "size": 8, "line": {"color": RULE, "width": 2}}, hoverinfo="skip", row=row, col=1,
-    )  # fmt: skip
+    return [
+        {
+            "x": rounded([-reach, reach]),
+            "y": [0, 0],
+            "mode": "lines",
+            "line": {"color": RULE, "width": 1, "dash": "dot"},
+        },
+        {"x": x, "y": y, "mode": "lines", "line": {"color": TRAIL, "width": 3}, "connectgaps": False},
+        {
+            "x": rounded([-reach - BESIDE / 2] * 2),
+            "y": rounded([0.3, 0.3 + unit]),
+            "mode": "lines+markers+text",
+            "text": ["", " 1 weight"],
+            "textposition": "middle right",
+            "line": {"color": RULE, "width": 3},
+            "marker": {"symbol": "line-ew", "size": 8, "line": {"color": RULE, "width": 2}},
+        },
+    ]
 
 
 def _moving(one: DrawnBeat, unit: float) -> list[list[dict[str, Any]]]:

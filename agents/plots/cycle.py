@@ -1,6 +1,9 @@
 """Angles, force and power of strokes over one wingbeat."""
 
+import copy
+import functools
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
@@ -43,29 +46,28 @@ def waveforms(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel) 
         strokes: by label, at most four.
         model: of the aerodynamics.
     """
-    figure = stacked(
-        ("flapping angle φ", "pitching angle θ", "angle of attack α"),
-        ("φ [°]", "θ [°]", "α [°]"),
-        legend_rows=(len(strokes) + 2) // 3,
-    )
+    panels = {"flapping angle φ": "φ [°]", "pitching angle θ": "θ [°]", "angle of attack α": "α [°]"}
+    curves = []
     for label, style in line_styles(strokes).items():
         beat = simulate(insect, strokes[label], model=model, strips=2, steps=STEPS, spacing="gauss")
         for row, angle in enumerate((beat.kinematics.flap, beat.kinematics.pitch, beat.angle_of_attack), start=1):
-            _draw(figure, row, np.degrees(angle), label, style, named=label if row == 1 else None)
-    figure.update_yaxes(dtick=45)
+            curves.append(_curve(row, np.degrees(angle), label, style, named=label if row == 1 else None))
+    figure = _stacked(panels, curves, legend_rows=(len(strokes) + 2) // 3)
+    figure.update_layout(yaxis_dtick=45, yaxis2_dtick=45, yaxis3_dtick=30)
     return figure
 
 
 def forces(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel) -> go.Figure:
     """Lift over weight and power over body mass over t/T, translational term; arguments as `waveforms`."""
-    figure = stacked(("lift", "aerodynamic power"), (LIFT, POWER), legend_rows=len(strokes))
-    figure.update_layout(legend_orientation="v")
+    curves = []
     for label, style in line_styles(strokes).items():
         beat = simulate(insect, strokes[label], model=model, strips=2, steps=STEPS, spacing="gauss")
         support, power = beat.lift / (insect.mass * model.gravity), beat.power / insect.mass
         means = f"{label}: mean lift {np.mean(support):.3f} weights, {np.mean(power):.1f} W/kg"
         for row, values in enumerate((support, power), start=1):
-            _draw(figure, row, values, label, style, named=means if row == 1 else None)
+            curves.append(_curve(row, values, label, style, named=means if row == 1 else None))
+    figure = _stacked({"lift": LIFT, "aerodynamic power": POWER}, curves, legend_rows=len(strokes))
+    figure.update_layout(legend_orientation="v")
     return figure
 
 
@@ -82,32 +84,39 @@ def terms(insect: Insect, stroke: Stroke, model: HoverModel) -> go.Figure:
     if "inertia" in known:
         of_air = np.sum([power[name] for name in air], axis=0)
         panels["with the wings' inertia"] = {"aerodynamic": of_air, "inertia": power["inertia"]}
-    figure = stacked(tuple(panels), (LIFT, *[POWER] * (len(panels) - 1)), legend_rows=3)
-    listed: set[str] = set()
-    for row, curves in enumerate(panels.values(), start=1):
-        for name, values in {**curves, "sum": np.sum(list(curves.values()), axis=0)}.items():
+    curves, listed = [], set[str]()
+    for row, parts in enumerate(panels.values(), start=1):
+        for name, values in {**parts, "sum": np.sum(list(parts.values()), axis=0)}.items():
             label = name.replace("-", " ")
-            _draw(figure, row, values, label, TERM_STYLES[name], named=None if name in listed else label)
+            curves.append(_curve(row, values, label, TERM_STYLES[name], named=None if name in listed else label))
             listed.add(name)
-    return figure
+    titles = {title: LIFT if parts is lift else POWER for title, parts in panels.items()}
+    return _stacked(titles, curves, legend_rows=3)
 
 
-def stacked(titles: Sequence[str], labels: Sequence[str], legend_rows: int = 1) -> go.Figure:
-    """Empty panels over t/T, one below the other, with room for the legend above.
+def _stacked(panels: Mapping[str, str], curves: Sequence[dict[str, Any]], legend_rows: int) -> go.Figure:
+    """Panels over t/T, one below the other, with room for the legend above.
 
     Args:
-        titles: above each panel.
-        labels: of the vertical axes, with units.
+        panels: titles, and labels of the vertical axes with units.
+        curves: as `_curve` makes them.
         legend_rows: that the legend takes on a phone.
     """
-    count, top = len(titles), legend_rows * LEGEND_ROW + TITLE + 12
+    layout = copy.deepcopy(_layout(tuple(panels.items()), legend_rows))
+    return go.Figure(data=list(curves), layout=layout)
+
+
+@functools.lru_cache(maxsize=64)
+def _layout(panels: tuple[tuple[str, str], ...], legend_rows: int) -> dict[str, Any]:
+    """The layout of empty panels, which takes Plotly longer than everything else."""
+    count, top = len(panels), legend_rows * LEGEND_ROW + TITLE + 12
     inside = count * PANEL + (count - 1) * GAP
-    figure = make_subplots(
-        rows=count, cols=1, shared_xaxes=True, vertical_spacing=GAP / inside if count > 1 else 0, subplot_titles=titles
-    )
+    spacing = GAP / inside if count > 1 else 0
+    titles = [title for title, _ in panels]
+    figure = make_subplots(rows=count, cols=1, shared_xaxes=True, vertical_spacing=spacing, subplot_titles=titles)
     styled(figure, inside + top + FOOT)
     figure.update_annotations(x=0, xanchor="left", align="left", font_size=13)
-    for number, label in enumerate(labels, start=1):
+    for number, (_, label) in enumerate(panels, start=1):
         figure.update_yaxes(title_text=label, row=number, col=1)
     figure.update_xaxes(range=[0, 1], dtick=0.25, zeroline=False, showticklabels=True)
     figure.update_xaxes(title_text="time over the cycle t/T [-]", row=count, col=1)
@@ -116,23 +125,26 @@ def stacked(titles: Sequence[str], labels: Sequence[str], legend_rows: int = 1) 
         legend={"y": 1 + TITLE / inside, "yanchor": "bottom"},
         hovermode="x unified",
     )
-    return figure
+    layout: dict[str, Any] = figure.to_plotly_json()["layout"]
+    return layout
 
 
-def _draw(figure: go.Figure, row: int, values: np.ndarray, label: str, style: LineStyle, named: str | None) -> None:
+def _curve(row: int, values: np.ndarray, label: str, style: LineStyle, named: str | None) -> dict[str, Any]:
     """One curve in a panel, with a line in the legend where it is named there."""
     every = len(values) // POINTS
     chosen = slice(every // 2, None, every)
     time = (np.arange(len(values)) + 0.5) / len(values)
-    figure.add_scatter(
-        x=rounded(time[chosen]),
-        y=rounded(values[chosen]),
-        mode="lines",
-        line=style.line,
-        name=named or label,
-        legendgroup=label,
-        showlegend=named is not None,
-        hovertemplate=f"{label} %{{y:.4g}}<extra></extra>",
-        row=row,
-        col=1,
-    )
+    axis = "" if row == 1 else str(row)
+    return {
+        "type": "scatter",
+        "x": rounded(time[chosen]),
+        "y": rounded(values[chosen]),
+        "mode": "lines",
+        "line": style.line,
+        "name": named or label,
+        "legendgroup": label,
+        "showlegend": named is not None,
+        "hovertemplate": f"{label} %{{y:.4g}}<extra></extra>",
+        "xaxis": f"x{axis}",
+        "yaxis": f"y{axis}",
+    }

@@ -10,7 +10,7 @@ from statistics import median
 from typing import Any
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, expect
 
 import flapenv
 from agents.explore_command import answering, listen
@@ -25,7 +25,9 @@ WATCH = """() => {
     window.waits = [];
     let since = null;
     for (const kind of ["keydown", "pointermove"])
-        document.getElementById("controls").addEventListener(kind, () => { since ??= performance.now(); }, true);
+        document.getElementById("controls").addEventListener(kind, (event) => {
+            if (kind === "keydown" || event.buttons) since ??= performance.now();
+        }, true);
     new MutationObserver(() => {
         if (since !== null) window.waits.push((performance.now() - since) / 1000);
         since = null;
@@ -97,6 +99,14 @@ def test_the_page_shows_the_first_insect_and_fits(opened: Page) -> None:
     heights = opened.evaluate("[...document.querySelectorAll('.js-plotly-plot')].map(one => one.clientHeight)")
     assert len(heights) == 4
     assert min(heights) > 300
+
+
+def test_every_control_has_a_name_that_can_be_read_aloud(opened: Page) -> None:
+    for name in ("frequency f [Hz]", "amplitude φmax [°]", "angle of attack α_mid [°]", "phase δ, 90° symmetric [°]"):
+        expect(opened.get_by_role("slider", name=name)).to_have_count(1)
+        expect(opened.get_by_role("spinbutton", name=name)).to_have_count(1)
+    unnamed = opened.evaluate("[...document.querySelectorAll('button')].filter(b => !b.textContent && !b.ariaLabel)")
+    assert unnamed == []
 
 
 def test_a_key_on_a_slider_changes_the_numbers_at_once(opened: Page) -> None:
@@ -192,6 +202,18 @@ def test_the_wing_beats_until_it_is_paused(opened: Page) -> None:
     still = figure.get_attribute("data-frame")
     opened.wait_for_timeout(400)
     assert figure.get_attribute("data-frame") == still
+
+
+def test_the_wing_stands_still_for_who_asks_for_less_motion(browser: Browser, address: str) -> None:
+    page = browser.new_page(reduced_motion="reduce")
+    page.goto(address)
+    figure = page.locator("#figure-beat .js-plotly-plot")
+    expect(page.get_by_label("play the wingbeat")).to_be_visible()
+    page.wait_for_timeout(400)
+    assert figure.get_attribute("data-frame") == "0"
+    page.get_by_label("play the wingbeat").click()
+    expect(figure).not_to_have_attribute("data-frame", "0")
+    page.close()
 
 
 def test_the_downloaded_file_gives_the_same_stroke(opened: Page, tmp_path: Path) -> None:

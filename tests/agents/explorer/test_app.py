@@ -2,17 +2,22 @@
 
 import json
 import math
+import statistics
 import sys
+import threading
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
+from dash import Dash
 
 import flapenv
 from agents.explorer import cases
+from agents.explorer.app import make_app
 from agents.explorer.controls import OWN_WING
 from flapenv.aero.parameters import STROKE_PARAMETERS
-from flapenv.files import read_strokes
+from flapenv.files import WingFile, read_strokes
 from flapenv.optimum import optimum
 
 
@@ -80,6 +85,47 @@ def test_moving_a_slider_solves_no_optimum(page: Any, monkeypatch: pytest.Monkey
     assert exact(page.numbers())["gap"] is not None
 
 
+def test_numbers_are_answered_within_a_tenth_of_a_second(page: Any) -> None:
+    page.choose(insect="hawkmoth")
+    times = []
+    for step in range(21):
+        start = time.perf_counter()
+        page.numbers(frequency=25.0 + 0.1 * step)
+        times.append(time.perf_counter() - start)
+    print(f"{1000 * statistics.median(times):.1f} ms (median), {1000 * max(times):.1f} ms (worst)")
+    assert statistics.median(times) < 0.05  # the rest is the browser's
+
+
+def test_pages_that_are_drawn_at_once_do_not_disturb_each_other(page: Any, app: Dash) -> None:
+    page.choose(insect="fruitfly")  # beyond the range of some of the other models, whose warnings are silenced
+    calm = [page.values["case"], "own", *(250.0, 75.0, 0.1, 5.0, 40.0, 90.0)]
+    failed: list[BaseException] = []
+
+    def draw() -> None:
+        try:
+            other = type(page)(app)
+            assert other.ask("remarks.children", changed="calm.data", calm=calm)
+        except AssertionError as mistake:
+            failed.append(mistake)
+
+    for _ in range(3):
+        threads = [threading.Thread(target=draw) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert not failed
+
+
+def test_the_own_stroke_is_not_said_to_beat_itself(page: Any) -> None:
+    page.values |= {name: one["value"] for name, one in page.choose(insect="dronefly").items() if "value" in one}
+    names = ("frequency", "flap_amplitude", "flap_shape", "pitch_shape", "alpha_mid", "pitch_phase")
+    calm = [page.values["case"], "own", *(page.values[name] for name in names)]
+    told = words(page.ask("remarks.children", changed="calm.data", calm=calm)["remarks"]["children"])
+    assert "uncertainty of P*" in told
+    assert "less power" not in told
+
+
 @pytest.mark.parametrize(
     ("field", "value"),
     [
@@ -145,6 +191,16 @@ def test_a_name_is_text_wherever_it_is_shown(page: Any) -> None:
     assert "<script>alert(1)</script>: 100 mg" in words(answer["note"]["children"])  # a child, which React escapes
     shown = page.ask("download.data", changed="export.n_clicks", frequency=100.0)["download"]["data"]
     assert shown["filename"] == "script-alert-1-script-stroke.json"
+
+
+def test_a_name_of_a_file_is_no_part_of_the_pages_html(base: str) -> None:
+    hawkmoth, name = flapenv.load_insect("hawkmoth"), "</script><script>alert(1)</script>"
+    insect = flapenv.Insect(name=name, mass=hawkmoth.mass, wing=hawkmoth.wing, stroke=hawkmoth.stroke)
+    client = make_app(WingFile(insect=insect)).server.test_client()
+    assert "alert" not in client.get("/", base_url=base).text
+    layout = client.get("/_dash-layout", base_url=base)
+    assert layout.mimetype == "application/json"
+    assert name in json.dumps(layout.get_json())
 
 
 @pytest.mark.parametrize("insect", ["hawkmoth", OWN_WING])
