@@ -40,6 +40,7 @@ def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
             y=names,
             x=[_percent(value) for value in values],
             orientation="h",
+            showlegend=any(value is not None for value in values),
             marker={"color": colour, "pattern": {"shape": pattern, "bgcolor": colour, "fgcolor": "white", "size": 6}},
             error_x=whiskers if label == BY_CFD else None,
             hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{label}</extra>",

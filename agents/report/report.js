@@ -5,11 +5,10 @@
   const config = JSON.parse(document.getElementById("plot-config").textContent);
   const places = [...document.querySelectorAll(".plot")];
 
-  function draw(place, width) {
+  function draw(place) {
     if (place.dataset.drawn) return;
     place.dataset.drawn = "yes";
     const figure = JSON.parse(document.getElementById(`${place.id}-data`).textContent);
-    if (width) figure.layout.width = width;
     Plotly.newPlot(place, figure.data, figure.layout, config);
   }
 
@@ -30,13 +29,19 @@
     opened = [...document.querySelectorAll("details:not([open])")];
     opened.forEach((details) => { details.open = true; });
     for (const place of places) {
-      const width = place.closest(".pair") ? PRINTED_PAIR : PRINTED;
-      if (place.dataset.drawn) Plotly.relayout(place, { width });
-      else draw(place, width);
+      draw(place); // as wide as it will be again: a figure born with a width cannot lose it
+      Plotly.relayout(place, { width: place.closest(".pair") ? PRINTED_PAIR : PRINTED });
     }
   });
   window.addEventListener("afterprint", () => {
-    opened.forEach((details) => { details.open = false; });
     places.forEach((place) => Plotly.relayout(place, { width: null, autosize: true }));
+    opened.forEach((details) => { details.open = false; });
   });
+
+  for (const details of document.querySelectorAll("details")) { // what is folded away misses a turn of the phone
+    details.addEventListener("toggle", () => {
+      if (!details.open) return;
+      details.querySelectorAll(".plot[data-drawn]").forEach((place) => Plotly.Plots.resize(place));
+    });
+  }
 })();

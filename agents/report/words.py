@@ -105,11 +105,19 @@ def _infeasible(strokes: Sequence[StrokeAssessment], called: str) -> list[str]:
 
 
 def _outside(strokes: Sequence[StrokeAssessment]) -> list[str]:
-    """What no CFD case covers, in a line; the list has a section of its own."""
-    names = list(dict.fromkeys(quantity.name for one in strokes for quantity in one.outside))
-    if not names:
-        return []
-    return [f"Read it with care: {', '.join(names)}: outside of what the eight CFD cases cover, see the list below."]
+    """What no CFD case covers and what lies beyond the box, in a line each; the lists have a section of their own."""
+    uncovered = dict.fromkeys(quantity.name for one in strokes for quantity in one.outside)
+    beyond = dict.fromkeys(quantity.name for one in strokes for quantity in one.beyond_box)
+    told = []
+    if uncovered:
+        told.append(
+            f"Read it with care: {', '.join(uncovered)}: outside of what the eight CFD cases cover, listed below."
+        )
+    if beyond:
+        told.append(
+            f"{', '.join(beyond)}: beyond the problem's box, where no optimum was sought; gaps may be negative."
+        )
+    return told
 
 
 def span(values: Sequence[float], digits: int) -> str:

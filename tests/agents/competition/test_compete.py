@@ -61,7 +61,7 @@ def test_random_wings_and_who_cannot_hover_are_told_apart() -> None:
         wingbeats=128,
         seeds=1,
     )
-    result = compete(prepare(config), progress=False, report=False)
+    result = compete(prepare(config), progress=False)
     assert result.left_out == ("fruitfly",)
     assert [insect.name for insect in result.insects] == ["cranefly", "test-0-0", "test-0-1"]
     assert "left out, cannot hover in this box or lack a wing mass: fruitfly" in competition_table(result)
@@ -113,7 +113,7 @@ def test_wings_without_a_mass_are_left_out_of_the_problem_that_needs_one() -> No
     config = CompetitionConfig(
         problem="inertial", insects=["fruitfly", "cranefly"], competitors=["random search"], wingbeats=64, seeds=1
     )
-    result = compete(prepare(config), progress=False, report=False)
+    result = compete(prepare(config), progress=False)
     assert result.left_out == ("cranefly",)
 
 

@@ -115,6 +115,14 @@ def test_a_stroke_that_saves_less_than_is_known_is_named(content_of: Make) -> No
     assert "for all but hawkmoth more than that uncertainty" in said
 
 
+def test_what_lies_beyond_the_box_is_told_because_a_gap_may_then_be_negative(content_of: Make) -> None:
+    best = optimum("hawkmoth").stroke
+    steeper = dataclasses.replace(best, pitch_amplitude=best.pitch_amplitude * 1.1)
+    said = " ".join(summary(content_of("hawkmoth", strokes={"hawkmoth": steeper})))
+    assert "θmax: beyond the problem's box" in said
+    assert "beyond the problem's box" not in " ".join(summary(content_of("hawkmoth")))
+
+
 def test_a_span_of_one_number_is_that_number() -> None:
     assert span([1.004, 0.996], 2) == "1.00"
     assert span([0.5, 1.26], 1) == "0.5 to 1.3"
