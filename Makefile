@@ -42,7 +42,8 @@ test-floor: $(FLOOR)/.installed  ## The environments' tests with the oldest Gymn
 	$(FLOOR)/bin/python -m pytest tests/envs $(ARGS)
 
 test-browser: $(STAMP)  ## Report and explorer in Chromium, which is installed where it is missing (Debian, as root)
-	@command -v chromium >/dev/null || command -v google-chrome >/dev/null || { apt-get update -q && apt-get install -y -q chromium; } \
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null \
+		|| { apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -y -q chromium; } \
 		|| { echo "make test-browser: no Chromium, and apt-get could not install it; mend: install the package chromium as root" >&2; exit 2; }
 	$(BIN)/python -m pytest -m browser $(ARGS)
 
