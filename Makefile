@@ -9,7 +9,7 @@ RLLIB := .venv-rllib
 ENV_ID ?= flapenv/Hover-v0
 ZOO_ALGO ?= ppo
 
-.PHONY: help train test test-fast test-floor test-browser lint format bench benchmark validate clients client-ppo client-zoo client-rllib clean
+.PHONY: help train test test-fast test-floor test-browser lint format bench benchmark docs validate clients client-ppo client-zoo client-rllib clean
 
 help:  ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -42,7 +42,8 @@ test-floor: $(FLOOR)/.installed  ## The environments' tests with the oldest Gymn
 	$(FLOOR)/bin/python -m pytest tests/envs $(ARGS)
 
 test-browser: $(STAMP)  ## Report and explorer in Chromium, which is installed where it is missing (Debian, as root)
-	@command -v chromium >/dev/null || command -v google-chrome >/dev/null || { apt-get update -q && apt-get install -y -q chromium; } \
+	@command -v chromium >/dev/null || command -v chromium-browser >/dev/null || command -v google-chrome >/dev/null \
+		|| { apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -y -q chromium; } \
 		|| { echo "make test-browser: no Chromium, and apt-get could not install it; mend: install the package chromium as root" >&2; exit 2; }
 	$(BIN)/python -m pytest -m browser $(ARGS)
 
@@ -62,6 +63,10 @@ bench: $(STAMP)  ## Wingbeats a second of the oracle, the fast path, the environ
 benchmark: $(STAMP)  ## Every learner and every task, five seeds each, two at a time (an hour; goes on where it stopped)
 	$(BIN)/python train.py benchmark $(ARGS)
 
+docs: $(STAMP)  ## The documentation site, docs/_build/html/index.html; warnings are errors
+	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --fail-on-warning --keep-going --nitpicky --quiet docs docs/_build/html
+	@echo "open docs/_build/html/index.html"
+
 validate: $(STAMP)  ## Tables 2 and 3 of the paper beside ours
 	$(BIN)/python -m flapenv.validation
 
@@ -78,5 +83,5 @@ client-rllib: $(RLLIB)/.installed  ## One of them: RLlib, one process for the na
 	OMP_NUM_THREADS=1 $(RLLIB)/bin/python clients/rllib_ppo.py --env-id flapenv:$(ENV_ID) \
 		--vectorize-mode vector_entry_point --env-runners 0 $(ARGS)
 
-clean:  ## Remove the virtual environments and caches, not the runs
-	rm -rf $(VENV) $(FLOOR) $(ZOO) $(RLLIB) .mypy_cache .pytest_cache .ruff_cache .hypothesis
+clean:  ## Remove the virtual environments, caches and the built site, not the runs
+	rm -rf docs/_build $(VENV) $(FLOOR) $(ZOO) $(RLLIB) .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -1,10 +1,12 @@
 """Assessed strokes as people read them: the table, what other models say, and what lies outside the validated range."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from flapenv.assessment import StrokeAssessment
+from flapenv.assessment.model_errors import typical_errors
 from flapenv.assessment.validity import Quantity
 from flapenv.tables import text_table
 
@@ -21,10 +23,10 @@ def assessment_table(results: Sequence[StrokeAssessment], called: str = LEARNED)
     """
     rows: list[tuple[str, ...]] = [
         (
-            *("insect", "weight", called, "", "optimum", "bound", "gap"),
-            *("own stroke:", "CFD", "model", "weight", "saved of", "CFD", "", "model"),
+            *("insect", "weight", "", called, "", "optimum", "bound", "gap"),
+            *("own stroke:", "CFD", "model", "weight", "saved", "", "of CFD"),
         ),
-        ("", "support", "W/kg", "±", "W/kg", "W/kg", "%", "", "W/kg", "W/kg", "support", "", "%", "±", "%"),
+        ("", "support", "±", "W/kg", "±", "W/kg", "W/kg", "%", "", "W/kg", "W/kg", "support", "%", "±", "%"),
     ]
     rows += [table_row(result) for result in results]
     lines = [text_table(rows, header_rows=2)]
@@ -38,8 +40,9 @@ def assessment_table(results: Sequence[StrokeAssessment], called: str = LEARNED)
         if not result.best.feasible
     )
     lines += [
-        "±: the model's own error against CFD at the insect's stroke (without CFD, the rms of the eight insects')",
-        "saved: of the own stroke's power by CFD and by this model, each beaten as fast as carries exactly the weight",
+        _legend(results),
+        "saved: of the own stroke's power in this model, both beaten as fast as carries exactly the weight; of CFD: of",
+        "what CFD gives the own stroke, which holds the model's error, too: the difference is the ± of what is saved",
     ]
     lines += [ranking_sentence(results, called), outside_sentences(results)]
     return "\n".join(line for line in lines if line)
@@ -51,8 +54,9 @@ def table_row(result: StrokeAssessment) -> tuple[str, ...]:
     return (
         result.insect.name,
         f"{result.weight_support:.4f}",
+        f"{result.weight_uncertainty:.2f}",
         f"{result.specific_power:.2f}",
-        f"{result.power_uncertainty:.1f}",
+        number(result.power_uncertainty, 1),
         f"{best.specific_power:.2f}" if best.feasible else "none",
         number(best.lower_bound, 2),
         number(result.gap, 2, percent=True),
@@ -60,10 +64,19 @@ def table_row(result: StrokeAssessment) -> tuple[str, ...]:
         number(result.cfd_power, 0),
         f"{result.own_specific_power:.1f}",
         f"{result.own_weight_support:.3f}",
-        "",
-        number(result.saving_to_cfd, 0, percent=True),
-        number(result.saving_uncertainty, 0, percent=True),
         number(result.saving, 0, percent=True),
+        number(result.saving_uncertainty, 0, percent=True),
+        number(result.saving_to_cfd, 0, percent=True),
+    )
+
+
+def _legend(results: Sequence[StrokeAssessment]) -> str:
+    """What ± says, with how far the model is off in the eight CFD cases."""
+    typical = typical_errors(results[0].problem.model)
+    power = "" if typical.specific_power is None else f" and {100 * typical.specific_power:.0f} % in power"
+    return (
+        "±: as far as the model is off CFD at the insect's own stroke; in the rms of the CFD cases, which stands where "
+        f"there is\nno CFD, {number(typical.weight_support, 0, percent=True)} % in weight support{power}"
     )
 
 
@@ -100,12 +113,7 @@ def ranking_sentence(results: Sequence[StrokeAssessment], called: str = LEARNED)
         results: one an insect; those whose stroke is the insect's own are left out.
         called: what the strokes are, in a word.
     """
-    judged = [
-        (result.insect.name, ranking)
-        for result in results
-        for ranking in result.rankings
-        if result.stroke != result.insect.stroke
-    ]
+    judged = [(result.insect.name, ranking) for result in results for ranking in result.rankings if not is_own(result)]
     if not judged:
         return ""
     lost: dict[str, list[str]] = {}
@@ -117,11 +125,21 @@ def ranking_sentence(results: Sequence[StrokeAssessment], called: str = LEARNED)
     return f"{called} needs less than the own stroke in {held} of {len(judged)} cases of other models{end}"
 
 
+def is_own(result: StrokeAssessment) -> bool:
+    """Whether the stroke is the insect's own but for rounding."""
+    pairs = zip(vars(result.stroke).values(), vars(result.insect.stroke).values(), strict=True)
+    return all(math.isclose(one, own, rel_tol=1e-4, abs_tol=1e-9) for one, own in pairs)
+
+
 def outside_sentences(results: Sequence[StrokeAssessment]) -> str:
     """What of the strokes and wings no CFD case covers, and what lies beyond the box; with the insects it holds for."""
     validated = _grouped({result.insect.name: result.outside for result in results})
     box = _grouped({result.insect.name: result.beyond_box for result in results})
-    lines = ["outside of what CFD has validated:", *validated] if validated else []
+    lines = (
+        ["outside of what the CFD cases cover, or of the angles that the model is made for:", *validated]
+        if validated
+        else []
+    )
     return "\n".join([*lines, *(["outside of the problem's box, so that a gap may be negative:", *box] if box else [])])
 
 

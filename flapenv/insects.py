@@ -32,9 +32,10 @@ class HoverReference:
 
     def __post_init__(self) -> None:
         """Check both."""
-        object.__setattr__(self, "weight_support", require_scalar("weight_support", self.weight_support))
+        support = require_scalar("weight_support", self.weight_support, 0.0, open_low=True)
+        object.__setattr__(self, "weight_support", support)
         if self.specific_power is not None:
-            power = require_scalar("specific_power", self.specific_power, unit="W/kg")
+            power = require_scalar("specific_power", self.specific_power, 0.0, open_low=True, unit="W/kg")
             object.__setattr__(self, "specific_power", power)
 
 

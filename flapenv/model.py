@@ -101,6 +101,10 @@ class HoverModel:
         return self.is_plate and self.accounting == "elastic"
 
 
+BEYOND_THEORY = ".*is outside the range of the"
+"""What finds the warning of `warn_of_aspect_ratio`, where a model is used beyond its range on purpose."""
+
+
 def as_model(value: Any) -> HoverModel:
     """A `HoverModel` from itself, the dict of its options, or None for the paper's.
 

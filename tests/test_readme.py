@@ -25,5 +25,17 @@ def test_every_picture_and_link_leads_somewhere() -> None:
 
 
 def test_every_make_target_a_reader_needs_is_named() -> None:
-    for target in ("train", "test", "test-fast", "test-floor", "clients", "lint", "bench", "validate", "help"):
+    for target in (
+        "train",
+        "test",
+        "test-fast",
+        "test-floor",
+        "test-browser",
+        "docs",
+        "clients",
+        "lint",
+        "bench",
+        "validate",
+        "help",
+    ):
         assert f"make {target}" in README

@@ -91,9 +91,9 @@ def text_report(data: BenchmarkData, machine: str) -> str:
 
 
 def markdown_report(data: BenchmarkData, machine: str) -> str:
-    """The same in Markdown."""
+    """The same in Markdown, as a page."""
     tables = [_markdown_table(rows) for rows in (reached_rows(data), spent_rows(data))]
-    return "\n\n".join([*tables, "\n".join(f"- {note}" for note in notes(data, machine))])
+    return "\n\n".join(["# The benchmark's tables", *tables, "\n".join(f"- {note}" for note in notes(data, machine))])
 
 
 def write_report(data: BenchmarkData, folder: Path) -> str:

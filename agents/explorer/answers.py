@@ -80,7 +80,9 @@ def note(case: Case) -> list[Any]:
 def remarks(case: Case, stroke: Stroke) -> list[Any]:
     """What one should know before one believes the numbers."""
     judged, found = case.judged(stroke), []
-    found.append(f"uncertainty of P*: ±{100 * judged.uncertainty:.0f} %, {_why(judged)}")
+    if judged.power_share is not None:
+        lift, power = 100 * judged.weight_share, 100 * judged.power_share
+        found.append(f"uncertainty: Λ ± {lift:.0f} %, P* ± {power:.0f} %, {_why(judged)}")
     if judged.weight_support < 1 - SAME_WEIGHT:
         found.append(f"this stroke carries {100 * judged.weight_support:.2f} % of the weight: it does not hover")
     if abs(judged.weight_support - 1) > SAME_WEIGHT:
@@ -102,7 +104,7 @@ def remarks(case: Case, stroke: Stroke) -> list[Any]:
 
 def _why(judged: StrokeAssessment) -> str:
     """Where the uncertainty comes from."""
-    if judged.model_error is None:
+    if judged.errors.specific_power is None:
         return "the model's error against CFD over the eight insects"
     return "the model's error against CFD at the insect's own stroke"
 

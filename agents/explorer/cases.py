@@ -15,7 +15,7 @@ from flapenv.aero.checks import require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment, assess, outside_validated
-from flapenv.assessment.hovering import hovering
+from flapenv.assessment.hovering import hovering_power
 from flapenv.assessment.validity import outside_box
 from flapenv.files import WingFile
 from flapenv.insects import INSECTS, Insect, load_insect
@@ -48,14 +48,14 @@ class Case:
     def judged(self, stroke: Stroke) -> StrokeAssessment:
         """A stroke judged as `assess` does it, without the other models; solves nothing."""
         model = self.problem.model
-        found, carried = evaluate(self.insect, stroke, **vars(model)), hovering(self.insect, stroke, model)
+        found = evaluate(self.insect, stroke, **vars(model))
         return dataclasses.replace(
             self.own,
             stroke=stroke,
             weight_support=found.weight_support,
             specific_power=found.specific_power,
             gap=self.own.best.gap(found.weight_support, found.specific_power),
-            hovering_power=carried.specific_power if carried else None,
+            hovering_power=hovering_power(self.insect, stroke, model),
             outside=outside_validated(self.insect, stroke, air_density=model.air_density),
             beyond_box=outside_box(self.insect, stroke, self.problem.box),
             rankings=(),

@@ -13,16 +13,16 @@ ROW_HEIGHT, FRAME_HEIGHT = 42, 140
 """Of an insect, and of everything around the bars [px]."""
 BY_CFD, BY_MODEL, AS_IS = (
     "of CFD's power",
-    "of the model's, both carrying the weight",
-    "of the model's, both as they are",
+    "in this model, both carrying the weight",
+    "in this model, both as they are",
 )
 """Names of the three comparisons with the insect's own stroke."""
 
 
 def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
-    """Bars for each insect: what is saved of the own stroke's power by CFD and by the model, in percent.
+    """Bars for each insect: what is saved of the own stroke's power in the model and of CFD's, in percent.
 
-    Whiskers are what the model's own error against CFD makes of the first.
+    Whiskers are what the model's error against CFD makes of the first.
 
     Args:
         assessments: one of each insect.
@@ -32,8 +32,8 @@ def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
     spans = [_percent(one.saving_uncertainty) for one in assessments]
     whiskers = {"type": "data", "array": spans, "color": BLACK, "thickness": 1.5, "width": 4}
     for label, values, colour, pattern in (
-        (BY_CFD, [one.saving_to_cfd for one in assessments], BLUE, ""),
-        (BY_MODEL, [one.saving for one in assessments], ORANGE, "/"),
+        (BY_MODEL, [one.saving for one in assessments], BLUE, ""),
+        (BY_CFD, [one.saving_to_cfd for one in assessments], ORANGE, "/"),
     ):
         figure.add_bar(
             name=label,
@@ -42,7 +42,7 @@ def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
             orientation="h",
             showlegend=any(value is not None for value in values),
             marker={"color": colour, "pattern": {"shape": pattern, "bgcolor": colour, "fgcolor": "white", "size": 6}},
-            error_x=whiskers if label == BY_CFD else None,
+            error_x=whiskers if label == BY_MODEL else None,
             hovertemplate=f"%{{y}}: %{{x:.1f}} %<extra>{label}</extra>",
         )
     figure.add_scatter(

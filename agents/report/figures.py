@@ -60,9 +60,9 @@ def curve_figure(content: ReportContent) -> PlacedFigure | None:
 def savings_figure(strokes: Sequence[StrokeAssessment], called: str) -> PlacedFigure:
     """How much less power is needed."""
     text = (
-        f"What the {called} stroke saves of the power of the insect's own stroke. Plain bars: of CFD's power, with the "
-        "model's own error as whiskers. Hatched bars: of the model's power, both strokes slowed or hurried until they "
-        "carry exactly the weight. Diamonds: of the model's power, both strokes as they are, whatever they carry."
+        f"What the {called} stroke saves of the power of the insect's own stroke. Plain bars: in this model, both "
+        "strokes slowed or hurried until they carry exactly the weight; whiskers: what the model's error against CFD "
+        "makes of it. Hatched bars: of the power that CFD found. Diamonds: both as they are, whatever they lift."
     )
     return placed(savings(strokes), "savings", "Power saved", text)
 

@@ -131,7 +131,9 @@ def _insect_part(one: StrokeAssessment, called: str, number: int) -> InsectPart:
     return InsectPart(
         name=one.insect.name,
         heading=(
-            f"{one.specific_power:.2f} ± {one.power_uncertainty:.1f} W/kg, own stroke {one.own_specific_power:.1f} W/kg"
+            f"{one.specific_power:.2f}"
+            + ("" if one.power_uncertainty is None else f" ± {one.power_uncertainty:.1f}")
+            + f" W/kg, own stroke {one.own_specific_power:.1f} W/kg"
             + ("" if one.cfd_power is None else f" (CFD {one.cfd_power:.0f})")
         ),
         strokes=strokes_table(strokes_of(one, called)),

@@ -38,9 +38,11 @@ def results_table(strokes: Sequence[StrokeAssessment], called: str) -> Table:
     """
     rows = []
     for one in strokes:
-        name, weight, power, unsure, *middle, saved, saved_unsure, by_model = [cell for cell in table_row(one) if cell]
-        saved_text = saved if one.saving_to_cfd is None else f"{saved} ± {saved_unsure}"
-        rows.append((name, weight, f"{power} ± {unsure}", *middle, saved_text, by_model))
+        cells = [cell for cell in table_row(one) if cell]
+        name, weight, weight_unsure, power, power_unsure, *middle, saved, saved_unsure, by_cfd = cells
+        pairs = ((weight, weight_unsure), (power, power_unsure), (saved, saved_unsure))
+        weight, power, saved = (cell if unsure == "none" else f"{cell} ± {unsure}" for cell, unsure in pairs)
+        rows.append((name, weight, power, *middle, saved, by_cfd))
     return Table(
         caption=f"Each insect's {called} stroke beside the optimum, the proven bound and its own stroke",
         columns=(
@@ -53,14 +55,14 @@ def results_table(strokes: Sequence[StrokeAssessment], called: str) -> Table:
             ("own stroke: CFD", "W/kg"),
             ("own stroke: model", "W/kg"),
             ("own stroke: weight support", "Λ"),
+            ("saved in this model", "%"),
             ("saved of CFD's", "%"),
-            ("saved of the model's", "%"),
         ),
         rows=tuple(rows),
         note=(
-            "±: the model's own error against CFD at the insect's stroke; without CFD, the root mean square of the "
-            "eight insects'. Saved: of the own stroke's power by CFD and by this model, each stroke beaten as fast as "
-            "carries exactly the weight."
+            "±: as far as the model is off CFD at the insect's own stroke; without CFD, the root mean square over the "
+            "eight cases. Saved: of the own stroke's power, both strokes beaten as fast as carries exactly the weight; "
+            "what is saved of CFD's power holds the model's error, too, and the difference is the ± of what is saved."
         ),
     )
 

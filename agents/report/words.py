@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from agents.assessment_table import ranking_sentence
+from agents.assessment_table import is_own, ranking_sentence
 from agents.report.content import ReportContent
 from flapenv.assessment import StrokeAssessment
 
@@ -25,45 +25,47 @@ def _powers(strokes: Sequence[StrokeAssessment], called: str) -> list[str]:
     """What the strokes carry and need."""
     power = span([one.specific_power for one in strokes], 2)
     weight = span([one.weight_support for one in strokes], 4)
-    error = span([100 * one.uncertainty for one in strokes], 0)
     who = strokes[0].insect.name if len(strokes) == 1 else f"{len(strokes)} insects"
-    own = all(one.stroke == one.insect.stroke for one in strokes)
-    end = "" if own else ", is taken as the uncertainty of these powers: nobody has run CFD on these strokes"
-    told = [
-        f"The {called} strokes of {who} carry {weight} of the weight with {power} W/kg. The model's own error against "
-        f"CFD at the insects' own strokes{f' is {error} %' if own else f', {error} %'}{end}."
-    ]
+    told = [f"The {called} strokes of {who} carry {weight} of the weight with {power} W/kg. {_uncertainty(strokes)}"]
     light = [one.insect.name for one in strokes if one.best.feasible and one.weight_support < CARRIED]
     if light:
         told.append(f"The full weight is not carried by {', '.join(light)}.")
     return told
 
 
+def _uncertainty(strokes: Sequence[StrokeAssessment]) -> str:
+    """How far the model is off, and what that says of other strokes."""
+    lift = f"{span([100 * one.weight_share for one in strokes], 0)} % in weight support"
+    shares = [100 * share for one in strokes if (share := one.power_share) is not None]
+    power = f" and {span(shares, 0)} % in power" if shares else ""
+    end = "" if all(is_own(one) for one in strokes) else ", which is taken as the uncertainty of these numbers: nobody"
+    end += " has run CFD on these strokes" if end else ""
+    if all(one.errors.weight_support is None for one in strokes):
+        return f"In the eight CFD cases this model is typically off by {lift}{power}{end}."
+    return f"At the insects' own strokes this model is off CFD by {lift}{power}{end}."
+
+
 def _savings(strokes: Sequence[StrokeAssessment]) -> list[str]:
     """What is saved of the own strokes' power, and where that is less than is known."""
-    others = [one for one in strokes if one.stroke != one.insect.stroke]
-    told = []
-    known = [
-        (one.insect.name, saving, unsure)
-        for one in others
-        if (saving := one.saving_to_cfd) is not None and (unsure := one.saving_uncertainty) is not None
-    ]
+    others = [one for one in strokes if not is_own(one) and one.saving is not None]
+    if not others:
+        return []
+    saved = span([100 * (one.saving or 0.0) for one in others], 0)
+    said = f"That saves {saved} % of the power of the own strokes, both beaten as fast as carries exactly the weight"
+    known = [(one, unsure) for one in others if (unsure := one.saving_uncertainty) is not None]
     if known:
-        doubted = [name for name, saving, unsure in known if saving <= unsure]
+        doubted = [one.insect.name for one, unsure in known if (one.saving or 0.0) <= unsure]
         which = f"for all but {', '.join(doubted)}" if doubted else "each"
-        told.append(
-            f"That saves {span([100 * saving for _, saving, _ in known], 0)} % of the power that CFD found for the own "
-            f"strokes, ± {span([100 * unsure for *_, unsure in known], 0)} points: {which} more than that "
-            "uncertainty."
-        )
-    equal = [100 * one.saving for one in others if one.saving is not None]
-    if equal:
-        published = span([100 * one.saving_as_published for one in others], 0)
-        told.append(
-            f"Model against model it saves {span(equal, 0)} % where both strokes beat as fast as carries exactly the "
-            f"weight, and {published} % of the own strokes as published, which carry "
-            f"{span([one.own_weight_support for one in others], 2)} of the weight in this model."
-        )
+        said += f", ± {span([100 * unsure for _, unsure in known], 0)} points: {which} more than that uncertainty"
+    by_cfd = [100 * saving for one in others if (saving := one.saving_to_cfd) is not None]
+    told = [f"{said}."]
+    if by_cfd:
+        told.append(f"Of the power that CFD found for the own strokes it saves {span(by_cfd, 0)} %.")
+    published = span([100 * one.saving_as_published for one in others], 0)
+    carried = span([one.own_weight_support for one in others], 2)
+    told.append(
+        f"Of the own strokes as published, which carry {carried} of the weight in this model, it saves {published} %."
+    )
     return told
 
 

@@ -1,7 +1,5 @@
 """A stroke of an insect beside everything that is known: optimum, bound, own stroke, CFD, other models."""
 
-import dataclasses
-import functools
 import math
 import warnings
 from typing import Any
@@ -9,13 +7,13 @@ from typing import Any
 from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
-from flapenv.assessment.hovering import hovering
-from flapenv.assessment.rankings import Ranking, rankings
+from flapenv.assessment.hovering import saved
+from flapenv.assessment.model_errors import ModelErrors, cfd_hovering_power, model_errors, typical_errors
+from flapenv.assessment.rankings import Ranking, ranked, rankings
 from flapenv.assessment.validity import Quantity, outside_box, outside_validated
-from flapenv.insects import INSECTS, Insect, as_insect, load_insect
-from flapenv.model import HoverModel
+from flapenv.insects import Insect, as_insect
+from flapenv.model import BEYOND_THEORY
 from flapenv.optimum import Optimum, optimum
-from flapenv.performance import evaluate
 from flapenv.problem import HoverProblem, as_problem
 
 
@@ -23,8 +21,8 @@ from flapenv.problem import HoverProblem, as_problem
 class StrokeAssessment:
     """What a stroke of an insect is worth.
 
-    The model's own error against CFD at the insect's stroke is taken as the uncertainty of the power it gives for any
-    other stroke: nobody has run CFD there.
+    The model's error against CFD at the insect's own stroke is taken as the uncertainty of what it says of any other
+    stroke, on which nobody has run CFD; where an insect has no CFD, the root mean square over the eight cases.
 
     Attributes:
         insect: the insect.
@@ -40,9 +38,7 @@ class StrokeAssessment:
         hovering_power: P* of the stroke at the frequency with which it carries exactly the weight in this model
             [W/kg]; None where it lifts nothing.
         own_hovering_power: the same of the insect's own stroke [W/kg].
-        model_error: P*_model/P*_CFD - 1 at the insect's own stroke [-]; None where there is no CFD.
-        uncertainty: of `specific_power`, relative [-]: |model_error|, or the root mean square of the eight insects'
-            where there is no CFD.
+        errors: of the model against CFD at the insect's own stroke.
         outside: what of stroke and wing the eight CFD cases do not cover.
         beyond_box: what of the stroke lies beyond the problem's box, where the optimum was not sought.
         rankings: the stroke beside the insect's own under other models.
@@ -59,16 +55,39 @@ class StrokeAssessment:
     own_specific_power: float
     hovering_power: float | None
     own_hovering_power: float | None
-    model_error: float | None
-    uncertainty: float
+    errors: ModelErrors
     outside: tuple[Quantity, ...]
     beyond_box: tuple[Quantity, ...]
     rankings: tuple[Ranking, ...]
 
     @property
-    def power_uncertainty(self) -> float:
-        """Of P* [W/kg]."""
-        return self.uncertainty * self.specific_power
+    def weight_uncertainty(self) -> float:
+        """Of Λ [-]: what it would change if this stroke's lift is off by as much as the insect's own."""
+        return self.weight_share * self.weight_support
+
+    @property
+    def power_uncertainty(self) -> float | None:
+        """Of P* [W/kg]: likewise; None where only positive power is paid, which no CFD gives."""
+        return None if self.power_share is None else self.power_share * self.specific_power
+
+    @property
+    def saving_uncertainty(self) -> float | None:
+        """Of `saving` [-]: how far it is from `saving_to_cfd`, or would typically be where there is no CFD."""
+        error = self.errors.hovering_power
+        error = typical_errors(self.problem.model).hovering_power if error is None else error
+        return None if self.saving is None or error is None else (1 - self.saving) * abs(error)
+
+    @property
+    def weight_share(self) -> float:
+        """Uncertainty of Λ over Λ [-]."""
+        share = _share(self.errors.weight_support, typical_errors(self.problem.model).weight_support)
+        assert share is not None  # every CFD case has a weight support
+        return share
+
+    @property
+    def power_share(self) -> float | None:
+        """Uncertainty of P* over P* [-]."""
+        return _share(self.errors.specific_power, typical_errors(self.problem.model).specific_power)
 
     @property
     def cfd_power(self) -> float | None:
@@ -77,8 +96,11 @@ class StrokeAssessment:
 
     @property
     def saving(self) -> float | None:
-        """1 - P*/P*_own in this model, both strokes carrying exactly the weight [-]; None where one cannot."""
-        return _saved(self.hovering_power, self.own_hovering_power)
+        """1 - P*/P*_own in this model, both strokes carrying exactly the weight [-]; None where one cannot.
+
+        An error that the model makes alike in both cancels.
+        """
+        return saved(self.hovering_power, self.own_hovering_power)
 
     @property
     def saving_as_published(self) -> float:
@@ -89,17 +111,12 @@ class StrokeAssessment:
     def saving_to_cfd(self) -> float | None:
         """1 - P*/P*_CFD, this stroke carrying the weight in this model and the insect's own in CFD [-].
 
-        None where only positive power is paid, too: CFD's power is what springs return, and less.
+        It holds the model's error against CFD as well as what is saved. None where only positive power is paid, too:
+        CFD's power is what springs return, and less.
         """
         if self.problem.model.accounting == "positive":
             return None
-        return _saved(self.hovering_power, self.cfd_power)
-
-    @property
-    def saving_uncertainty(self) -> float | None:
-        """Of `saving_to_cfd` [-]."""
-        saving = self.saving_to_cfd
-        return None if saving is None else self.uncertainty * (1 - saving)
+        return saved(self.hovering_power, cfd_hovering_power(self.insect.cfd))
 
     @property
     def flags(self) -> tuple[str, ...]:
@@ -111,6 +128,7 @@ class StrokeAssessment:
         return {
             "weight_support": self.weight_support,
             "specific_power": self.specific_power,
+            "weight_uncertainty": self.weight_uncertainty,
             "power_uncertainty": self.power_uncertainty,
             "optimum_specific_power": self.best.specific_power if self.best.feasible else None,
             "lower_bound": self.best.lower_bound,
@@ -119,15 +137,17 @@ class StrokeAssessment:
             "max_weight_support": self.best.max_weight_support,
             "lift_shortfall": None if self.best.feasible else self.best.max_weight_support - self.weight_support,
             "cfd_specific_power": self.cfd_power,
-            "model_error_percent": _percent(self.model_error),
+            "model_weight_error_percent": _percent(self.errors.weight_support),
+            "model_power_error_percent": _percent(self.errors.specific_power),
+            "model_hovering_error_percent": _percent(self.errors.hovering_power),
             "own_stroke_weight_support": self.own_weight_support,
             "own_stroke_specific_power": self.own_specific_power,
             "hovering_power": self.hovering_power,
             "own_stroke_hovering_power": self.own_hovering_power,
             "saving_percent": _percent(self.saving),
+            "saving_uncertainty_percent": _percent(self.saving_uncertainty),
             "saving_as_published_percent": _percent(self.saving_as_published),
             "saving_to_cfd_percent": _percent(self.saving_to_cfd),
-            "saving_to_cfd_uncertainty_percent": _percent(self.saving_uncertainty),
             "outside_validated_range": list(self.flags),
             "beyond_box": [quantity.text for quantity in self.beyond_box],
             "other_models": [ranking.to_dict() for ranking in self.rankings],
@@ -153,53 +173,37 @@ def assess(
     """
     insect, problem = as_insect(insect), as_problem(problem)
     stroke, model = insect.stroke if stroke is None else stroke, problem.model
-    judged, own = evaluate(insect, stroke, **vars(model)), evaluate(insect, **vars(model))
     best = optimum(insect, problem)
-    carried, own_carried = (hovering(insect, one, model) for one in (stroke, insect.stroke))
-    error = model_error(insect, model)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=BEYOND_THEORY)  # `optimum` has said so
+        here = ranked("", insect, stroke, model)
+    if not all(map(math.isfinite, (here.weight_support, here.specific_power))):
+        raise ValueError(
+            f"{insect.name}: Λ = {here.weight_support:.3g}, P* = {here.specific_power:.3g} W/kg of {stroke} are not "
+            "finite; allowed: a stroke and a wing that animals or machines beat"
+        )
     return StrokeAssessment(
         insect=insect,
         stroke=stroke,
         problem=problem,
-        weight_support=judged.weight_support,
-        specific_power=judged.specific_power,
-        gap=best.gap(judged.weight_support, judged.specific_power),
+        weight_support=here.weight_support,
+        specific_power=here.specific_power,
+        gap=best.gap(here.weight_support, here.specific_power),
         best=best,
-        own_weight_support=own.weight_support,
-        own_specific_power=own.specific_power,
-        hovering_power=carried.specific_power if carried else None,
-        own_hovering_power=own_carried.specific_power if own_carried else None,
-        model_error=error,
-        uncertainty=typical_error(model) if error is None else abs(error),
+        own_weight_support=here.own_weight_support,
+        own_specific_power=here.own_specific_power,
+        hovering_power=here.hovering_power,
+        own_hovering_power=here.own_hovering_power,
+        errors=model_errors(insect, model),
         outside=outside_validated(insect, stroke, air_density=model.air_density),
         beyond_box=outside_box(insect, stroke, problem.box),
         rankings=rankings(insect, stroke, model),
     )
 
 
-def model_error(insect: Insect, model: HoverModel) -> float | None:
-    """P*_model/P*_CFD - 1 at the insect's own stroke, with the springs that CFD's power has [-]; None without CFD."""
-    if insect.cfd is None or insect.cfd.specific_power is None:
-        return None
-    elastic = dataclasses.replace(model, accounting="elastic")
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message=".*outside the range of the")  # its error is what is asked for
-        return evaluate(insect, **vars(elastic)).specific_power / insect.cfd.specific_power - 1
-
-
-@functools.lru_cache(maxsize=256)
-def typical_error(model: HoverModel) -> float:
-    """Root mean square of `model_error` over the CFD cases that the model knows [-]."""
-    insects = [load_insect(name) for name in INSECTS]
-    if model.coefficients == "berman-wang":
-        insects = [insect for insect in insects if insect.force_constants is not None]
-    errors = [error for insect in insects if (error := model_error(insect, model)) is not None]
-    return math.sqrt(sum(error**2 for error in errors) / len(errors))
-
-
-def _saved(power: float | None, own: float | None) -> float | None:
-    """What of `own` is saved [-]; None where one is not known."""
-    return None if power is None or own is None else 1 - power / own
+def _share(error: float | None, typical: float | None) -> float | None:
+    """What correcting a number for the model's error changes it by, over the number; the typical error where None."""
+    return typical if error is None else abs(1 - 1 / (1 + error))
 
 
 def _percent(value: float | None) -> float | None:

@@ -14,9 +14,9 @@ AIR_VISCOSITY = 1.789e-5
 SMALLEST_ANGLE, LARGEST_ANGLE = math.radians(25), math.radians(45)
 """Angles of attack that wings usually have, where the model's accuracy is good [rad] (Part II, section 2.3.2)."""
 ROUNDING = 1e-4
-"""Of a bound's larger end, by which a stroke found in single precision may be beyond it."""
+"""Of a bound, by which a stroke found in single precision may be beyond it."""
 SLACK = 0.01
-"""Of a range's larger end, by which a value must be outside before it is worth a word."""
+"""Of an end of a range, by which a value must be beyond it before it is worth a word."""
 
 
 @record
@@ -38,9 +38,8 @@ class Quantity:
     unit: str = ""
 
     def is_outside(self, slack: float) -> bool:
-        """Whether the value is beyond the range by more than `slack` times its larger end."""
-        beyond = slack * max(abs(self.low), abs(self.high))
-        return not self.low - beyond <= self.value <= self.high + beyond
+        """Whether the value is beyond one of the ends by more than `slack` times that end."""
+        return not self.low - slack * abs(self.low) <= self.value <= self.high + slack * abs(self.high)
 
     @property
     def range_text(self) -> str:
@@ -80,10 +79,10 @@ def angle_at_mid_stroke(stroke: Stroke) -> float:
 
 
 def outside_validated(insect: Insect, stroke: Stroke, *, air_density: float = 1.225) -> tuple[Quantity, ...]:
-    """Everything about the stroke and the wing that none of the eight CFD cases covers.
+    """What of the stroke and the wing none of the eight CFD cases covers, or the model was not made for.
 
-    α is held against the 25° to 45° that the model is made for, all else against the least and the largest value of
-    the eight insects' own wings and strokes: Re, AR, f, φmax, Cφ, Cθ and δ.
+    α is held against the 25° to 45° for which the paper calls the model accurate, all else against the least and the
+    largest value of the eight insects' own wings and strokes: Re, AR, r̂₁, f, φmax, Cφ, Cθ and δ.
 
     Args:
         insect: one insect, scalar fields.
@@ -122,6 +121,7 @@ def _quantities(insect: Insect, stroke: Stroke, air_density: float) -> dict[tupl
         ("α at mid-stroke", "°"): math.degrees(angle_at_mid_stroke(stroke)),
         ("Re", ""): reynolds_number(insect, stroke, air_density=air_density),
         ("AR", ""): float(insect.wing.aspect_ratio),
+        ("r̂₁", ""): float(insect.wing.r1_hat),
     }
     for name, parameter in STROKE_PARAMETERS.items():
         if name != "pitch_amplitude":  # which α at mid-stroke says

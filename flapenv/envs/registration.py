@@ -9,6 +9,7 @@ _ENTRY_POINTS = {
     "flapenv/Heave-v0": ("heave:HeaveEnv", "heave:HeaveVectorEnv"),
 }
 ENV_IDS: tuple[str, ...] = tuple(_ENTRY_POINTS)
+"""Ids of the environments, in the order of the documentation."""
 
 
 def register_envs() -> None:

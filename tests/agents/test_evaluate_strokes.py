@@ -35,9 +35,9 @@ def test_a_published_stroke_is_its_line_of_table_3(capsys: pytest.CaptureFixture
     for row in table3():
         words = line_of(out, row.insect)
         assert words[1] == f"{row.weight_support:.4f}"
-        assert float(words[2]) == pytest.approx(row.specific_power, abs=0.005)
+        assert float(words[3]) == pytest.approx(row.specific_power, abs=0.005)
         assert words[2:] == line_of(evaluated(capsys, row.insect)[1], row.insect)[2:]
-        assert words[-1] == "0"  # it saves nothing of itself
+        assert words[-3] == "0"  # it saves nothing of itself
 
 
 @pytest.mark.parametrize("ending", ["json", "csv"])
@@ -53,7 +53,7 @@ def test_strokes_of_a_file_are_judged_as_they_were_written(
     for name in INSECTS:
         entry = kept["insects"][name]
         assert Stroke(**entry["stroke"]) == optimum(name).stroke
-        assert line_of(out, name)[2:4] == [f"{entry['specific_power']:.2f}", f"{entry['power_uncertainty']:.1f}"]
+        assert line_of(out, name)[3:5] == [f"{entry['specific_power']:.2f}", f"{entry['power_uncertainty']:.1f}"]
     assert (tmp_path / "kept" / "best" / "learned.png").stat().st_size > 10_000
 
 
@@ -71,15 +71,20 @@ def test_the_shipped_policy_needs_less_than_every_insects_own_stroke_and_the_ora
         assert (entry["weight_support"], entry["specific_power"]) == pytest.approx((support, power), rel=1e-4)
         assert support == pytest.approx(1, abs=2e-4)
         assert power < own_power / own_support**1.5
-        uncertainty = abs(own_power / insect.cfd.specific_power - 1) * power
+        uncertainty = abs(power - power * insect.cfd.specific_power / own_power)
         assert entry["power_uncertainty"] == pytest.approx(uncertainty, rel=1e-3)
+        carried = [one / lift**1.5 for lift, one in ((support, power), (own_support, own_power))]
+        saving, of_cfd = 1 - carried[0] / carried[1], 1 - carried[0] / insect.cfd.specific_power
+        assert saving > abs(saving - of_cfd)
         assert power + uncertainty < insect.cfd.specific_power
         words = line_of(out, name)
-        assert words[1:4] == [f"{support:.4f}", f"{power:.2f}", f"{uncertainty:.1f}"]
+        assert [words[1], *words[3:5]] == [f"{support:.4f}", f"{power:.2f}", f"{uncertainty:.1f}"]
         assert words[-3:] == [
-            f"{entry[key]:.0f}"
-            for key in ("saving_to_cfd_percent", "saving_to_cfd_uncertainty_percent", "saving_percent")
+            f"{entry[key]:.0f}" for key in ("saving_percent", "saving_uncertainty_percent", "saving_to_cfd_percent")
         ]
+        assert [entry["saving_percent"], entry["saving_to_cfd_percent"]] == pytest.approx(
+            [100 * saving, 100 * of_cfd], abs=0.05
+        )
     assert "29 of 30 cases of other models; not with positive power: hawkmoth\n" in out
 
 
@@ -99,7 +104,7 @@ def test_a_wing_of_ones_own_is_held_against_its_limits(tmp_path: Path, capsys: p
     code, out, _ = evaluated(capsys, "random-wings", "--wing", tmp_path / "robot.json")
     assert code == 0
     assert "beyond 40 to 60°: robot" in out
-    assert line_of(out, "robot")[3] == f"{0.109 * float(line_of(out, 'robot')[2]):.1f}"  # the rms of the eight
+    assert line_of(out, "robot")[4] == f"{0.109 * float(line_of(out, 'robot')[3]):.1f}"  # the rms of the eight
     write_strokes(tmp_path / "stroke.json", [NamedStroke(insect=robot, stroke=SLOW)])
     _, out, _ = evaluated(capsys, tmp_path / "stroke.json", "--wing", tmp_path / "robot.json")
     assert line_of(out, "robot")[1] == f"{evaluate_by_blade_element(robot, SLOW, **FINE)[0]:.4f}"

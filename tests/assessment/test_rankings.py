@@ -69,3 +69,19 @@ def test_a_ranking_says_so_in_words_that_json_keeps() -> None:
     assert sum(not entry["survives"] for entry in entries) == 1
     for entry in entries:
         assert entry["survives"] == (entry["saving_percent"] > 0)
+
+
+def test_measured_coefficients_get_no_second_drag_at_zero_lift() -> None:
+    others = other_models(load_insect("hawkmoth"), HoverModel(profile_drag=0.1))
+    assert {name: other.profile_drag for name, other in others.items()} == {
+        "extended-lifting-line": 0.1,
+        "polhamus": 0.1,
+        "robofly": 0.0,
+        "berman-wang": 0.0,
+        WITHOUT_SPRINGS: 0.1,
+    }
+
+
+def test_rounding_is_no_saving(insect: Insect) -> None:
+    nearly = dataclasses.replace(insect.stroke, pitch_phase=insect.stroke.pitch_phase + 1e-9)
+    assert not any(ranking.survives for ranking in rankings(insect, nearly))

@@ -66,6 +66,31 @@ def test_each_number_of_a_stroke_is_held_against_the_cases(change: dict[str, flo
     assert all(not quantity.low <= quantity.value <= quantity.high for quantity in outside)
 
 
+def test_a_tenth_below_the_least_or_above_the_largest_case_is_flagged() -> None:
+    """The ends are the hawkmoth's Re, AR and f, the fruit fly's f and Re, the hoverfly's and the ladybird's φmax ..."""
+    for share, low in ((0.9, True), (1.1, False)):
+        for field in ("frequency", "flap_amplitude"):
+            values = [getattr(load_insect(name).stroke, field) for name in INSECTS]
+            end = share * (min(values) if low else max(values))
+            stroke = dataclasses.replace(load_insect("honeybee").stroke, **{field: end})
+            symbol = {"frequency": "f", "flap_amplitude": "φmax"}[field]
+            assert symbol in [one.name for one in outside_validated(load_insect("honeybee"), stroke)]
+        name = "fruitfly" if low else "hawkmoth"
+        case = load_insect(name)
+        stroke = dataclasses.replace(case.stroke, frequency=share * case.stroke.frequency)
+        assert "Re" in [one.name for one in outside_validated(case, stroke)]
+        r1_hat = share * (0.46 if low else 0.56)
+        wing = dataclasses.replace(case.wing, r1_hat=r1_hat)
+        assert "r̂₁" in [one.name for one in outside_validated(dataclasses.replace(case, wing=wing), case.stroke)]
+
+
+def test_a_stroke_a_thousandth_beyond_a_bound_is_beyond_the_box() -> None:
+    best = optimum("hawkmoth").stroke
+    for share, beyond in ((1 + 1e-3, ["θmax"]), (1 + 1e-6, [])):
+        stroke = dataclasses.replace(best, pitch_amplitude=share * math.radians(65))
+        assert [one.name for one in outside_box(load_insect("hawkmoth"), stroke, StrokeBox())] == beyond
+
+
 def test_a_wing_of_another_shape_or_size_is_flagged(hawkmoth: Insect) -> None:
     slender = dataclasses.replace(hawkmoth, wing=Wing(length=0.0519, mean_chord=0.008, r1_hat=0.5))
     assert "AR" in [quantity.name for quantity in outside_validated(slender, hawkmoth.stroke)]

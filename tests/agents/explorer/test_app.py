@@ -122,7 +122,7 @@ def test_the_own_stroke_is_not_said_to_beat_itself(page: Any) -> None:
     names = ("frequency", "flap_amplitude", "flap_shape", "pitch_shape", "alpha_mid", "pitch_phase")
     calm = [page.values["case"], "own", *(page.values[name] for name in names)]
     told = words(page.ask("remarks.children", changed="calm.data", calm=calm)["remarks"]["children"])
-    assert "uncertainty of P*" in told
+    assert "uncertainty: Λ ± 19 %, P* ± 14 %" in told
     assert "less power" not in told
 
 
