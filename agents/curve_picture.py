@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agents.run_folder import CURVE
-from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
+from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib, verbatim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +56,7 @@ def draw_learning_curve(out: Path, distance: str, title: str) -> "Figure":
         yscale="log",
         xlabel="wingbeats [millions]",
         ylabel=f"{distance} [%]",
-        title=title,
+        title=verbatim(title),
     )
     axes.legend(frameon=False)
     axes.grid(alpha=0.25)

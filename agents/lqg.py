@@ -18,7 +18,7 @@ from agents.intervals import mean_with_interval
 from agents.lqg_controller import Lqg, lqg, proportional_derivative
 from agents.run_folder import open_run_folder, write_atomically
 from flapenv.aero.checks import record, require_count
-from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
+from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib, verbatim
 from flapenv.heave.gusts import GustModel
 from flapenv.insects import INSECTS, Insect, as_insect
 from flapenv.tables import text_table
@@ -185,7 +185,7 @@ def draw_front_on(axes: "Axes", front: Front) -> None:
     axes.set(
         xlabel="rms height z/R  (bars: 95 % of the paired difference from the laziest LQG)",
         ylabel="mean power over hovering [%]",
-        title=f"Holding height in gusts: {front.insect}, {len(base.beats)} episodes",
+        title=f"Holding height in gusts: {verbatim(front.insect)}, {len(base.beats)} episodes",
     )
     axes.legend(frameon=False)
     axes.grid(alpha=0.25)

@@ -1,6 +1,7 @@
 """`python train.py optimum`: the stroke of least power of insects and of one's own wings, with its proven bound."""
 
 import argparse
+import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +11,7 @@ from agents.one_line_parser import OneLineParser, folder, said
 if TYPE_CHECKING:
     from flapenv import HoverProblem, Insect, Optimum
 
-Solved = tuple["Insect", "Optimum"]
+Solved = tuple["Insect", "HoverProblem", "Optimum"]
 
 
 def parser() -> argparse.ArgumentParser:
@@ -48,8 +49,8 @@ def optimum_command(arguments: list[str]) -> int:
         check_out(options.out, [insect for insect, _ in asked])
         from flapenv import optimum
 
-        solved = [(insect, optimum(insect, problem)) for insect, problem in asked]
-        print(report(solved, asked[0][1]), flush=True)
+        solved = [(insect, problem, optimum(insect, problem)) for insect, problem in asked]
+        print(report(solved), flush=True)
         if options.out is not None:
             keep(solved, options.out)
             print(f"kept in {options.out}")
@@ -69,6 +70,7 @@ def cases(options: argparse.Namespace) -> list[tuple["Insect", "HoverProblem"]]:
     """
     from flapenv import INSECTS, load_insect
     from flapenv.files import read_wing
+    from flapenv.files.envelope import errors_of
     from flapenv.problem import as_problem
 
     base = as_problem(options.problem)
@@ -79,7 +81,10 @@ def cases(options: argparse.Namespace) -> list[tuple["Insect", "HoverProblem"]]:
         light = [insect.name for insect, _ in found if insect.wing.mass is None]
         print(f"left out, as their wing masses are not known: {', '.join(light)}", file=sys.stderr)
         found = [(insect, base) for insect, _ in found if insect.wing.mass is not None]
-    found += [(one.insect, one.problem(base)) for one in map(read_wing, options.wing)]
+    for path in options.wing:
+        wing = read_wing(path)
+        with errors_of(path):
+            found.append((wing.insect, wing.problem(base)))
     names = [insect.name for insect, _ in found]
     for insect, _ in found:
         if names.count(insect.name) > 1:
@@ -102,28 +107,40 @@ def check_out(out: Path | None, insects: list["Insect"]) -> None:
         require_writable(out, [NamedStroke(stroke=insect.stroke, insect=insect) for insect in insects])
 
 
-def report(solved: list[Solved], problem: "HoverProblem") -> str:
-    """The table that people read, what cannot hover, and how everything was verified."""
+def report(solved: list[Solved]) -> str:
+    """What people read: a table for each problem, what no CFD covers, and how everything was verified."""
+    from agents.assessment_table import outside_sentences
+    from flapenv.assessment import assess
+
+    tables: dict[str, list[Solved]] = {}
+    for one in solved:
+        tables.setdefault(json.dumps(one[1].to_dict(), sort_keys=True), []).append(one)
+    parts = [table(rows) for rows in tables.values()]
+    outside = outside_sentences([assess(insect, best.stroke, problem) for insect, problem, best in solved])
+    ways: dict[str, list[str]] = {}
+    for insect, _, best in solved:
+        ways.setdefault(best.verification, []).append(insect.name)
+    verified = [f"verified ({', '.join(names)}): {way}" for way, names in ways.items()]
+    return "\n\n".join(part for part in (*parts, outside, "\n".join(verified)) if part)
+
+
+def table(solved: list[Solved]) -> str:
+    """The optima of one problem, and below them what cannot hover."""
     from flapenv.aero.parameters import STROKE_PARAMETERS
     from flapenv.problem_tables import HEADER, cells
     from flapenv.tables import text_table
 
-    rows: list[tuple[str, ...]] = [(f"{problem.name}", "weight", *HEADER, "at bounds")]
-    for insect, best in solved:
+    rows: list[tuple[str, ...]] = [(f"{solved[0][1].name}", "weight", *HEADER, "at bounds")]
+    for insect, _, best in solved:
         bounds = " ".join(f"{STROKE_PARAMETERS[name].symbol}:{end}" for name, end in best.active_bounds)
         rows.append((insect.name, f"{best.weight_support:.4f}", *cells(best), bounds or "none"))
-    lines = [text_table(rows)]
-    lines.extend(
+    infeasible = [
         f"{insect.name} is INFEASIBLE: no stroke of the box supports more than {best.max_weight_support:.3f} of its "
         "weight; its line is the stroke that supports the most"
-        for insect, best in solved
+        for insect, _, best in solved
         if not best.feasible
-    )
-    ways: dict[str, list[str]] = {}
-    for insect, best in solved:
-        ways.setdefault(best.verification, []).append(insect.name)
-    lines.extend(f"verified ({', '.join(names)}): {way}" for way, names in ways.items())
-    return "\n".join(lines)
+    ]
+    return "\n".join([text_table(rows), *infeasible])
 
 
 def keep(solved: list[Solved], out: Path) -> None:
@@ -134,4 +151,4 @@ def keep(solved: list[Solved], out: Path) -> None:
     """
     from flapenv.files import NamedStroke, write_strokes
 
-    write_strokes(out, [NamedStroke(stroke=best.stroke, insect=insect) for insect, best in solved])
+    write_strokes(out, [NamedStroke(stroke=best.stroke, insect=insect) for insect, _, best in solved])

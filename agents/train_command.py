@@ -161,6 +161,7 @@ def own_wings(options: argparse.Namespace, preset: Any) -> dict[str, Any]:
         OSError: for files that cannot be read.
     """
     from flapenv.files import read_wing
+    from flapenv.files.envelope import errors_of
     from flapenv.problem import as_problem
 
     if options.insects is not None:
@@ -168,8 +169,10 @@ def own_wings(options: argparse.Namespace, preset: Any) -> dict[str, Any]:
     if preset.task != "hover":
         raise ValueError(f"--wing is not told of task {preset.task!r}; allowed: 'hover', see --list")
     base = as_problem(preset.arguments.get("problem") if options.problem is None else options.problem)
-    files = [read_wing(path) for path in options.wing]
-    problems = [one.problem(base) for one in files]
+    files, problems = [read_wing(path) for path in options.wing], []
+    for path, one in zip(options.wing, files, strict=True):
+        with errors_of(path):
+            problems.append(one.problem(base))
     for path, problem in zip(options.wing, problems, strict=True):
         if problem != problems[0]:
             raise ValueError(

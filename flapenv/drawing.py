@@ -35,6 +35,11 @@ def require_matplotlib() -> None:
         raise ImportError("pictures need matplotlib: pip install 'flapenv[report]'")
 
 
+def verbatim(text: str) -> str:
+    """A text as matplotlib shows it letter by letter: what stands between two dollars would be read as a formula."""
+    return text.replace("$", r"\$")
+
+
 def stroke_text(stroke: Stroke) -> str:
     """A stroke in one line as one reads it, angles in degrees."""
     words = []
@@ -69,7 +74,7 @@ def draw_wingbeat(insect: Insect, stroke: Stroke, model: HoverModel | None = Non
     figure = Figure(figsize=(9.6, 6.4), dpi=100, layout="constrained")
     grid = figure.add_gridspec(2, 3, height_ratios=(1.15, 1))
     figure.suptitle(
-        f"{insect.name}: weight support {performance.weight_support:.3f}, "
+        f"{verbatim(insect.name)}: weight support {performance.weight_support:.3f}, "
         f"{performance.specific_power:.2f} W/kg\n{stroke_text(stroke)}",
         fontsize=11,
     )

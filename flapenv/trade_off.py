@@ -13,7 +13,7 @@ import numpy as np
 
 from flapenv.aero.checks import record, require_name, require_real
 from flapenv.case import wing_factors
-from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib
+from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib, verbatim
 from flapenv.insects import INSECTS, Insect, as_insect
 from flapenv.many_optima import many_optima
 from flapenv.optimum import optimum
@@ -156,7 +156,7 @@ def draw_trade_offs(fronts: Mapping[str, Sequence[TradeOff]]) -> "Figure":
     for axes, (varied, row), title in zip(panels, fronts.items(), titles, strict=False):
         for front, colour in zip(row, COLOURS, strict=False):
             shown = np.degrees(front.values) if varied == "flap_amplitude" else front.values
-            axes.plot(shown, front.specific_power, "o-", ms=3, lw=1.4, color=colour, label=front.insect)
+            axes.plot(shown, front.specific_power, "o-", ms=3, lw=1.4, color=colour, label=verbatim(front.insect))
         axes.set(xlabel=VARIED[varied][0], ylabel="least power [W/kg]", yscale="log", title=f"{title} against power")
         axes.set_yticks(TICKS, [str(tick) for tick in TICKS], minor=False)
         axes.minorticks_off()

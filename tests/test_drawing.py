@@ -1,10 +1,14 @@
 """Pictures of wingbeats."""
 
+import dataclasses
+import io
+
 import numpy as np
 import pytest
+from matplotlib.cbook import is_math_text
 
 from flapenv import Insect, evaluate, optimum, simulate
-from flapenv.drawing import draw_wingbeat, stroke_text, wingbeat_image
+from flapenv.drawing import draw_wingbeat, stroke_text, verbatim, wingbeat_image
 
 
 def test_the_sheet_shows_sections_angles_lift_and_power_with_their_means(insect: Insect) -> None:
@@ -18,6 +22,14 @@ def test_the_sheet_shows_sections_angles_lift_and_power_with_their_means(insect:
     weight = insect.mass * 9.81
     for axes, expected in zip(figure.axes[2:], (history.lift / weight, history.power / insect.mass), strict=True):
         np.testing.assert_allclose(axes.lines[0].get_ydata(), expected)
+
+
+@pytest.mark.parametrize("name", [r"$\frac{$", "$x_1$ <b>", "$", r"a\$b$c"])
+def test_a_name_is_no_formula(name: str, hawkmoth: Insect) -> None:
+    figure = draw_wingbeat(dataclasses.replace(hawkmoth, name=name), hawkmoth.stroke)
+    assert verbatim(name) in figure.get_suptitle()
+    assert not is_math_text(figure.get_suptitle())
+    figure.savefig(io.BytesIO())
 
 
 def test_the_history_behind_the_picture_has_the_means_of_the_fast_path(hawkmoth: Insect) -> None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib
+from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib, verbatim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,9 +52,9 @@ def draw_flights(flown: "Flown", names: Sequence[str]) -> "Figure":
         line = {"color": colour, "ms": 9 if style == "_" else 3, "lw": 1.2, "label": name.replace("_", " ")}
         one.plot(beats, rewards[:, row], style, **line)
         mean.plot(beats, np.mean(rewards, axis=1), style, **line)
-    one.set(ylabel="reward", title=f"one episode of the {names[0]}", ylim=_most_of(flown, row))
+    one.set(ylabel="reward", title=f"one episode of the {verbatim(names[0])}", ylim=_most_of(flown, row))
     mean.set(ylabel="mean reward", title=f"mean of {best.shape[1]:,} held-out episodes")
-    lift.set_title(f"one episode of the {names[0]}")
+    lift.set_title(f"one episode of the {verbatim(names[0])}")
     for axes in (lift, one):
         axes.axvline(change + 0.5, color=GREY, lw=1, ls=":")
     for axes in (lift, one, mean):

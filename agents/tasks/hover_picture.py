@@ -8,7 +8,7 @@ import numpy as np
 
 from agents.assessment_table import LEARNED
 from flapenv.assessment import StrokeAssessment
-from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib
+from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib, verbatim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -34,7 +34,7 @@ def draw_strokes(results: Sequence[StrokeAssessment], called: str = LEARNED) -> 
             for angle, colour in ((stroke.flap_angle(phase), BLUE), (stroke.pitch_angle(phase), ORANGE)):
                 axes.plot(phase / (2 * math.pi), np.degrees(angle), dash, color=colour, lw=width, alpha=alpha)
         frequencies = f"{result.stroke.frequency:.4g} Hz (optimal {result.best.stroke.frequency:.4g})"
-        axes.set_title(f"{result.insect.name}\n{frequencies}", fontsize=9)
+        axes.set_title(f"{verbatim(result.insect.name)}\n{frequencies}", fontsize=9)
         axes.axhline(0, color=GREY, lw=0.5)
         axes.set(xlim=(0, 1), ylim=(-105, 105), yticks=(-90, -45, 0, 45, 90))
     for axes in list(grid.flat)[len(results) :]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flapenv.aero.spline_motion import SplineMotion
-from flapenv.drawing import BLUE, GREY, require_matplotlib
+from flapenv.drawing import BLUE, GREY, require_matplotlib, verbatim
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,7 +45,7 @@ def draw_learned_waveforms(titles: Sequence[str], pairs: Sequence[tuple[SplineMo
             label = "learned" if motion is learned else "best splines"
             rate.plot(time, motion.flap_rate(phase) / motion.mean_flap_speed, label=label, **style)
             pitch.plot(time, np.degrees(motion.pitch_angle(phase)), **style)
-        rate.set_title(titles[number], fontsize=9)
+        rate.set_title(verbatim(titles[number]), fontsize=9)
         pitch.set(xlim=(0, 1), yticks=(-60, 0, 60))
     for line in range(lines):
         panels[2 * line, 0].set_ylabel("φ̇ / mean |φ̇|")

@@ -9,7 +9,7 @@ import numpy as np
 from flapenv.aero.stroke import Stroke
 from flapenv.animation.beat import DrawnBeat
 from flapenv.animation.panels import AbovePanel, Panel, SectionPanel, TracePanel
-from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE, RED, stroke_text
+from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE, RED, stroke_text, verbatim
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -81,7 +81,8 @@ def _panels(
 ) -> tuple[SectionPanel, list[Panel]]:
     """The panels of one beat: the section; the wings from above and three traces."""
     part.suptitle(
-        f"{beat.name}: weight support {beat.weight_support:.3f}, {beat.mean_power:.2f} W/kg\n{_motion_text(beat)}",
+        f"{verbatim(beat.name)}: weight support {beat.weight_support:.3f}, {beat.mean_power:.2f} W/kg\n"
+        f"{_motion_text(beat)}",
         fontsize=11,
     )
     left, right = part.add_gridspec(1, 2, width_ratios=(1.6, 1))

@@ -145,7 +145,8 @@ def _wing_fields() -> Schema:
 def _insect() -> Schema:
     """The fields of `Insect`, as `Insect.to_dict` gives them."""
     positive, factor = _number(0, LARGEST_FACTOR, open_low=True), _number(1, LARGEST_FACTOR)
-    reference = _record(HoverReference, {"weight_support": _number(), "specific_power": _or_null(_number())})
+    above = _number(0, open_low=True)
+    reference = _record(HoverReference, {"weight_support": above, "specific_power": _or_null(above)})
     factors = {"k_ind": factor, "k_tip": factor, "k_revolving": _or_null(factor)}
     constant = _number(0, LARGEST_FACTOR)
     constants = {"lift_constant": positive, "zero_drag": constant, "normal_drag": constant}

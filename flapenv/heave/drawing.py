@@ -5,7 +5,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flapenv.aero.stroke import Stroke
-from flapenv.drawing import BLUE, GREY, ORANGE, RED, draw_wing_sections, figure_image, require_matplotlib, stroke_text
+from flapenv.drawing import (
+    BLUE,
+    GREY,
+    ORANGE,
+    RED,
+    draw_wing_sections,
+    figure_image,
+    require_matplotlib,
+    stroke_text,
+    verbatim,
+)
 from flapenv.insects import Insect
 
 if TYPE_CHECKING:
@@ -31,7 +41,7 @@ def draw_heave(insect: Insect, stroke: Stroke, path: np.ndarray, *, beats: int, 
 
     figure = Figure(figsize=(9.6, 6.4), dpi=100, layout="constrained")
     grid = figure.add_gridspec(2, 2, width_ratios=(2.2, 1))
-    figure.suptitle(f"{insect.name}, beat {len(path) - 1} of {beats}\n{stroke_text(stroke)}", fontsize=11)
+    figure.suptitle(f"{verbatim(insect.name)}, beat {len(path) - 1} of {beats}\n{stroke_text(stroke)}", fontsize=11)
     _draw_path(figure.add_subplot(grid[0, :]), path, beats, limit)
     sections = figure.add_subplot(grid[1, 0])
     draw_wing_sections(sections, insect, stroke)

@@ -20,6 +20,7 @@ from flapenv.drawing import (
     draw_wing_sections,
     figure_image,
     require_matplotlib,
+    verbatim,
 )
 from flapenv.insects import Insect, load_insect
 from flapenv.model import HoverModel
@@ -62,7 +63,8 @@ def draw_waveform(insect: Insect, motion: SplineMotion, model: HoverModel | None
     figure = Figure(figsize=(9.6, 6.4), dpi=100, layout="constrained")
     grid = figure.add_gridspec(2, 3, height_ratios=(1.15, 1))
     figure.suptitle(
-        f"{insect.name}: weight support {performance.weight_support:.3f}, {performance.specific_power:.2f} W/kg\n"
+        f"{verbatim(insect.name)}: weight support {performance.weight_support:.3f}, "
+        f"{performance.specific_power:.2f} W/kg\n"
         f"f = {motion.frequency:.4g} Hz   φmax = {math.degrees(motion.flap_amplitude):.1f}°   {motion.knots} knots a "
         "half-stroke",
         fontsize=11,

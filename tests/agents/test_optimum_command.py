@@ -1,13 +1,14 @@
 """The command line that prints optima: its numbers are `optimum`'s, and its files are read again."""
 
 import json
+import math
 from pathlib import Path
 
 import pytest
 
 import train
 from agents.optimum_command import cases, parser
-from flapenv import INSECTS, load_insect, optimum, read_strokes, read_wing
+from flapenv import INSECTS, HoverProblem, load_insect, optimum, read_strokes, read_wing
 
 ROBOT = Path(__file__).parents[2] / "docs" / "examples" / "robot.json"
 
@@ -43,12 +44,42 @@ def test_a_wing_of_ones_own_is_solved_within_its_limits(tmp_path: Path, capsys: 
     assert low <= robot.stroke.flap_amplitude <= high + 1e-9
     assert line_of("invented-robot", out)[6] == f"{robot.stroke.frequency:.4g}"
     assert f"kept in {tmp_path / 'a.json'}" in out
+    assert out.index("profile-drag ") < out.index("hawkmoth ") < out.index("profile-drag within limits ")
+    assert out.index("profile-drag within limits ") < out.index("invented-robot ")
 
 
 def test_csv_keeps_the_strokes_of_named_insects(tmp_path: Path) -> None:
     assert train.main(["optimum", "fruitfly", "hawkmoth", "--out", str(tmp_path / "a.csv")]) == 0
     found = read_strokes(tmp_path / "a.csv")
     assert [one.stroke for one in found] == [optimum(name).stroke for name in ("fruitfly", "hawkmoth")]
+
+
+def test_what_no_cfd_covers_is_told_of_limits_wider_than_the_problem(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    steep = wing_of(tmp_path, limits={"pitch_amplitude": [0.2, 1.5]})
+    assert train.main(["optimum", "--wing", steep]) == 0
+    out = capsys.readouterr().out
+    (stroke,) = [optimum(one.insect, one.problem(HoverProblem())).stroke for one in [read_wing(steep)]]
+    angle = math.degrees(stroke.angle_of_attack(0.0))
+    assert angle < 10
+    assert f"α at mid-stroke = {angle:.4g}, beyond 25 to 45°: invented-robot" in out
+
+
+def test_too_little_memory_is_one_line(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("agents.optimum_command.cases", full)
+    assert train.main(["optimum"]) == 2
+    assert capsys.readouterr().err == "train.py optimum: not enough memory\n"
+
+
+def test_limits_that_leave_nothing_name_the_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    far = wing_of(tmp_path, limits={"frequency": [1, 2]})
+    for asked in (["optimum", "--problem", "fixed-frequency"], ["--problem", "fixed-frequency"]):
+        assert train.main([*asked, "--wing", far]) == 2
+        assert f"{far}: limits of frequency leave invented-robot nothing" in capsys.readouterr().err
 
 
 def test_what_cannot_hover_says_how_much_it_can_carry(capsys: pytest.CaptureFixture[str]) -> None:
