@@ -1,6 +1,7 @@
 """Learned strokes over the optimal ones."""
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -43,5 +44,6 @@ def draw_strokes(results: Sequence[StrokeAssessment], called: str = LEARNED) -> 
         axes.set_xlabel("t/T")
     for axes in grid[:, 0]:
         axes.set_ylabel("angle [°]")
-    figure.suptitle(f"flapping φ (blue) and pitching θ (orange): {called} thin, optimal broad", fontsize=11)
+    said = f"flapping φ (blue) and pitching θ (orange): {called} thin, optimal broad"
+    figure.suptitle(textwrap.fill(said, 38 * columns), fontsize=11)
     return figure

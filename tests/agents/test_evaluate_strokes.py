@@ -121,7 +121,7 @@ def test_strokes_of_a_file_are_judged_in_the_problem_that_is_asked_for(
     best = optimum("hawkmoth", "profile-drag")
     assert kept["problem"]["name"] == "profile-drag"
     assert kept["insects"]["hawkmoth"]["optimum_specific_power"] == best.specific_power
-    assert line_of(out, "hawkmoth")[4] == f"{best.specific_power:.2f}"
+    assert line_of(out, "hawkmoth")[5] == f"{best.specific_power:.2f}"
 
 
 def test_limits_of_a_wing_bound_the_optimum_its_strokes_are_held_against_and_the_picture_shows_that_one(
