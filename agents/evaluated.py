@@ -204,10 +204,11 @@ def _evaluated_strokes(name: str, asked: Asked) -> Evaluated:
         told = [f"left out, as their wing masses are not known: {', '.join(light)}"]
     limited = [wing_problem(wing, problem) for wing in asked.wings] or [problem] * len(pairs)
     called = PUBLISHED if name in (*INSECTS, PUBLISHED) else "given"
-    verdict = verdict_of(
-        [assess(insect, stroke, own) for (insect, stroke), own in zip(pairs, limited, strict=True)], problem, called
-    )
-    known = real_name(name)
+    known, assessed = real_name(name), []
+    for (insect, stroke), own in zip(pairs, limited, strict=True):
+        with errors_of(f"{known}, {insect.name}"):
+            assessed.append(assess(insect, stroke, own))
+    verdict = verdict_of(assessed, problem, called)
     return Evaluated(
         title=f"{known}: {len(pairs)} stroke{'s' * (len(pairs) > 1)}, in the problem {problem.name}",
         verdict=verdict,

@@ -47,9 +47,7 @@ def optimum_command(arguments: list[str]) -> int:
     try:
         asked = cases(options)
         check_out(options.out, [insect for insect, _ in asked])
-        from flapenv import optimum
-
-        solved = [(insect, problem, optimum(insect, problem)) for insect, problem in asked]
+        solved = [solve(*one) for one in asked]
         print(report(solved), flush=True)
         if options.out is not None:
             keep(solved, options.out)
@@ -105,6 +103,19 @@ def check_out(out: Path | None, insects: list["Insect"]) -> None:
 
     if out is not None:
         require_writable(out, [NamedStroke(stroke=insect.stroke, insect=insect) for insect in insects])
+
+
+def solve(insect: "Insect", problem: "HoverProblem") -> Solved:
+    """The optimum of one insect.
+
+    Raises:
+        TypeError, ValueError: as `flapenv.optimum`, with the insect's name.
+    """
+    from flapenv import optimum
+    from flapenv.files.envelope import errors_of
+
+    with errors_of(insect.name):
+        return insect, problem, optimum(insect, problem)
 
 
 def report(solved: list[Solved]) -> str:

@@ -18,8 +18,8 @@ CHORDS = (1e-5, 1.0)
 """Mean chord [m]; Table 1's are 0.67 to 18.26 mm."""
 HEAVIEST = 1.0
 """Body mass [kg]; 600 times Table 1's largest, 1.648 g."""
-FASTEST = 5000.0
-"""Flapping frequency [Hz]; 20 times Table 1's largest, 254 Hz."""
+SLOWEST, FASTEST = 0.1, 5000.0
+"""Flapping frequency [Hz]; a 260th of Table 1's least, 26.3 Hz, to 20 times its largest, 254 Hz."""
 STEEPEST = 1e6
 """Cθ [-]; Table 1's strokes have 5, and from 1000 on a half-stroke of constant pitch is all but square."""
 SLENDERNESS = (1.0, 20.0)
@@ -42,7 +42,7 @@ def require_stroke(stroke: Stroke) -> None:
         ValueError: naming the field, the value and what is allowed.
     """
     _require_single(stroke)
-    require_real("frequency", stroke.frequency, 0.0, FASTEST, open_low=True, unit="Hz")
+    require_real("frequency", stroke.frequency, SLOWEST, FASTEST, unit="Hz")
     require_real("pitch_shape", stroke.pitch_shape, 0.0, STEEPEST)
 
 
@@ -60,12 +60,9 @@ def require_insect(insect: Insect) -> None:
             f"name = {insect.name!r} is that of an insect with other numbers; allowed: a name of one's own"
         )
     _require_body(insect)
-    for part, names in (
-        (insect.k_table, ("k_ind", "k_tip", "k_revolving")),
-        (insect.force_constants, ("lift_constant", "zero_drag", "normal_drag")),
-    ):
-        for name in names if part else ():
-            require_real(name, getattr(part, name), high=LARGEST_FACTOR)
+    for part, least in ((insect.k_table, 1.0), (insect.force_constants, 0.0)):
+        for name, value in vars(part).items() if part else ():
+            require_real(name, value, least, LARGEST_FACTOR)
     require_stroke(insect.stroke)
 
 

@@ -15,7 +15,7 @@ from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.files import strokes, wings
 from flapenv.files.envelope import STROKE_UNITS, VERSION, WING_UNITS
-from flapenv.files.plausible import CHORDS, FASTEST, HEAVIEST, LARGEST_FACTOR, LENGTHS, LONGEST_NAME, STEEPEST
+from flapenv.files.plausible import CHORDS, FASTEST, HEAVIEST, LARGEST_FACTOR, LENGTHS, LONGEST_NAME, SLOWEST, STEEPEST
 from flapenv.insects import INSECTS, ForceConstants, HoverReference, Insect, WingFactors
 from flapenv.problem import RELATIVE, StrokeBox
 
@@ -107,12 +107,12 @@ def _record(kind: type, properties: Schema) -> Schema:
 
 def _stroke_fields() -> Schema:
     """The six numbers of a stroke."""
-    return {
-        name: _number(
-            row.low, HIGHEST.get(name, row.high), open_low=row.open_low, meaning=f"{row.meaning} [{row.unit or '-'}]"
-        )
-        for name, row in STROKE_PARAMETERS.items()
-    }
+    made = {}
+    for name, row in STROKE_PARAMETERS.items():
+        low, open_low = (SLOWEST, False) if name == "frequency" else (row.low, row.open_low)
+        meaning = f"{row.meaning} [{row.unit or '-'}]"
+        made[name] = _number(low, HIGHEST.get(name, row.high), open_low=open_low, meaning=meaning)
+    return made
 
 
 def _limits() -> Schema:

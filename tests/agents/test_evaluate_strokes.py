@@ -198,6 +198,8 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     bee = [NamedStroke(insect="honeybee", stroke=SLOW)]
     write_strokes(tmp_path / "bee.json", bee)
     write_strokes(tmp_path / "two.json", bee * 2)
+    wide = dataclasses.replace(SLOW, flap_amplitude=2.0)
+    write_strokes(tmp_path / "wide.json", [NamedStroke(insect="honeybee", stroke=wide)])
     write_wing(tmp_path / "wing.json", WingFile(insect=load_insect("hawkmoth")))
     write_strokes(tmp_path / "one.csv", [NamedStroke(stroke=SLOW)])
     fixed = "--problem", "fixed-frequency"
@@ -227,6 +229,7 @@ def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
         (("hawkmoth", "--insects", "honeybee"), "published --insects"),
         (("hover", "--wing", tmp_path / "wing.json", "--insects", "honeybee"), "allowed: one of them"),
         (("hover", "--wing", tmp_path / "bee.json"), "bee.json"),
+        ((tmp_path / "wide.json",), "wide.json, honeybee: flap_amplitude (where k_flap is used) = 2 is not allowed"),
         (("hawkmot",), "did you mean 'hawkmoth'"),
     ):
         code, out, err = evaluated(capsys, *arguments)

@@ -165,7 +165,11 @@ def results(**insects: Any) -> dict[str, Any]:
         (with_entry(insect=HAWKMOTH.to_dict() | {"name": "a\nb"}), r"name = 'a\\nb' is not allowed"),
         (with_entry(insect=HAWKMOTH.to_dict() | {"mass": 2e-3}), r"'hawkmoth' is that of an insect with other numbers"),
         (with_entry(insect=in_millimetres()), r"strokes\[0\]: length = 51.9 is .*; 51.9 looks like millimetres: 0.05"),
-        (with_entry(frequency=1e104), r"frequency = 1e.104 is not allowed; allowed: finite, in \(0, 5000\] Hz"),
+        (with_entry(frequency=1e104), r"frequency = 1e.104 is not allowed; allowed: finite, in \[0.1, 5000\] Hz"),
+        (
+            with_entry(frequency=5e-324),
+            r"strokes\[0\]: frequency = 4.9.*e-324 is not allowed; allowed: .* \[0.1, 5000\]",
+        ),
         (with_entry(pitch_shape=1e308), r"pitch_shape = 1e.308 is not allowed; allowed: finite, in \[0, 1e.06\]"),
         (with_entry(frequency="a\n\x1b[31m\u2028" + "b" * 10**6), r"frequency = .a.*b. is not a number"),
         (with_entry(**{"a\n\u0085": 1}), r"unknown key 'a.n.x85'"),
