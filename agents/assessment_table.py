@@ -144,14 +144,23 @@ def outside_sentences(results: Sequence[StrokeAssessment]) -> str:
 
 
 def _grouped(outside: Mapping[str, Sequence[Quantity]]) -> list[str]:
-    """A line for each quantity and range, those that most insects share first."""
+    """A line for each quantity and range."""
+    return [f"  {name} = {value}, beyond {where}: {who}" for name, value, where, who in grouped(outside)]
+
+
+def grouped(outside: Mapping[str, Sequence[Quantity]]) -> list[tuple[str, str, str, str]]:
+    """Name, value or span of values, range, and whose it is, of each quantity and range; what most share comes first.
+
+    Args:
+        outside: of each insect.
+    """
     found: dict[tuple[str, str], dict[str, float]] = {}
     for insect, quantities in outside.items():
         for quantity in quantities:
             found.setdefault((quantity.name, quantity.range_text), {})[insect] = quantity.value
-    lines = []
+    rows = []
     for (name, where), values in sorted(found.items(), key=lambda item: -len(item[1])):
-        low, high = (f"{value:.4g}" for value in (min(values.values()), max(values.values())))
+        low, high = (f"{end(values.values()):.4g}" for end in (min, max))
         who = "all" if len(values) == len(outside) > 1 else ", ".join(values)
-        lines.append(f"  {name} = {low if low == high else f'{low} to {high}'}, beyond {where}: {who}")
-    return lines
+        rows.append((name, low if low == high else f"{low} to {high}", where, who))
+    return rows

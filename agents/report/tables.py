@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from agents.assessment_table import number, table_row
+from agents.assessment_table import grouped, number, table_row
 from agents.plots.sensitivities import STEPS, step_costs
 from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS
@@ -101,18 +101,9 @@ def beyond_table(strokes: Sequence[StrokeAssessment]) -> Table:
 
 
 def _quantities_table(caption: str, allowed: str, outside: Mapping[str, Sequence[Quantity]]) -> Table:
-    """A row for each quantity and range with the insects it holds for, those that most share first."""
-    found: dict[tuple[str, str], dict[str, float]] = {}
-    for insect, quantities in outside.items():
-        for quantity in quantities:
-            found.setdefault((quantity.name, quantity.range_text), {})[insect] = quantity.value
-    rows = []
-    for (name, where), values in sorted(found.items(), key=lambda item: -len(item[1])):
-        low, high = (f"{end(values.values()):.4g}" for end in (min, max))
-        who = "all" if len(values) == len(outside) > 1 else ", ".join(values)
-        rows.append((name, low if low == high else f"{low} to {high}", where, who))
+    """A row for each quantity and range with the insects it holds for."""
     columns = (("quantity", ""), ("here", ""), (allowed, ""), ("of", ""))
-    return Table(caption=caption, columns=columns, rows=tuple(rows))
+    return Table(caption=caption, columns=columns, rows=tuple(grouped(outside)))
 
 
 def strokes_table(strokes: Mapping[str, Stroke]) -> Table:
