@@ -8,6 +8,7 @@ import math
 
 from flapenv.aero.arrays import Real
 from flapenv.aero.checks import is_single, require_real, shown
+from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.insects import INSECTS, Insect, described
 from flapenv.model import HoverModel
@@ -18,10 +19,15 @@ CHORDS = (1e-5, 1.0)
 """Mean chord [m]; Table 1's are 0.67 to 18.26 mm."""
 HEAVIEST = 1.0
 """Body mass [kg]; 600 times Table 1's largest, 1.648 g."""
-SLOWEST, FASTEST = 0.1, 5000.0
-"""Flapping frequency [Hz]; a 260th of Table 1's least, 26.3 Hz, to 20 times its largest, 254 Hz."""
-STEEPEST = 1e6
-"""Cθ [-]; Table 1's strokes have 5, and from 1000 on a half-stroke of constant pitch is all but square."""
+STROKES: dict[str, tuple[float, float]] = {
+    "frequency": (0.1, 5000.0),
+    "flap_amplitude": (1e-3, STROKE_PARAMETERS["flap_amplitude"].high),
+    "pitch_shape": (0.0, 1e6),
+}
+"""Where a file allows less than a `Stroke` [its SI units].
+
+The frequency goes from a 260th of Table 1's least, 26.3 Hz, to 20 times its largest, 254 Hz; the amplitude from 0.06°,
+Table 1's being 45° to 88.5°; Cθ is 5 there, and from some 1000 on the pitch is a square wave to every digit shown."""
 SLENDERNESS = (1.0, 20.0)
 """Aspect ratio of one wing [-]; Table 1's are 2.84 to 5.34, the lifting line is good above 2.8 (`ASPECT_RATIOS`)."""
 CENTRES = (0.38, 0.65)
@@ -42,8 +48,8 @@ def require_stroke(stroke: Stroke) -> None:
         ValueError: naming the field, the value and what is allowed.
     """
     _require_single(stroke)
-    require_real("frequency", stroke.frequency, SLOWEST, FASTEST, unit="Hz")
-    require_real("pitch_shape", stroke.pitch_shape, 0.0, STEEPEST)
+    for name, (low, high) in STROKES.items():
+        require_real(name, getattr(stroke, name), low, high, unit=STROKE_PARAMETERS[name].unit)
 
 
 def require_insect(insect: Insect) -> None:

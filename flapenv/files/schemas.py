@@ -15,13 +15,11 @@ from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.files import strokes, wings
 from flapenv.files.envelope import STROKE_UNITS, VERSION, WING_UNITS
-from flapenv.files.plausible import CHORDS, FASTEST, HEAVIEST, LARGEST_FACTOR, LENGTHS, LONGEST_NAME, SLOWEST, STEEPEST
+from flapenv.files.plausible import CHORDS, HEAVIEST, LARGEST_FACTOR, LENGTHS, LONGEST_NAME, STROKES
 from flapenv.insects import INSECTS, ForceConstants, HoverReference, Insect, WingFactors
 from flapenv.problem import RELATIVE, StrokeBox
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
-HIGHEST = {"frequency": FASTEST, "pitch_shape": STEEPEST}
-"""Where a file allows less than a `Stroke`."""
 UNSEEN = r"[\u0000-\u001f\u007f-\u009f\u2028\u2029]"
 """What no name holds: control characters and line ends; readers refuse whatever does not print."""
 Schema = dict[str, Any]
@@ -109,9 +107,9 @@ def _stroke_fields() -> Schema:
     """The six numbers of a stroke."""
     made = {}
     for name, row in STROKE_PARAMETERS.items():
-        low, open_low = (SLOWEST, False) if name == "frequency" else (row.low, row.open_low)
+        low, high = STROKES.get(name, (row.low, row.high))
         meaning = f"{row.meaning} [{row.unit or '-'}]"
-        made[name] = _number(low, HIGHEST.get(name, row.high), open_low=open_low, meaning=meaning)
+        made[name] = _number(low, high, open_low=row.open_low and name not in STROKES, meaning=meaning)
     return made
 
 
@@ -120,8 +118,8 @@ def _limits() -> Schema:
     made = {}
     for field in (field.name for field in dataclasses.fields(StrokeBox)):
         row = STROKE_PARAMETERS[field.removesuffix("_ratio")]
-        high = HIGHEST.get(field, row.high)
-        bound = _number(row.low, high, open_low=row.open_low)
+        low, high = STROKES.get(field, (row.low, row.high))
+        bound = _number(low, high, open_low=row.open_low and field not in STROKES)
         unit = "over the insect's own" if field.endswith("_ratio") else row.unit or "-"
         pair = {"type": "array", "items": bound, "minItems": 2, "maxItems": 2}
         made[field] = {"anyOf": [pair, bound], "description": f"{row.meaning} [{unit}]"}

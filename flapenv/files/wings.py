@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from flapenv.aero.checks import record, shown
+from flapenv.aero.checks import record, require_real, shown
+from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.wing import Wing
 from flapenv.files.columns import read_columns
 from flapenv.files.envelope import (
@@ -18,7 +19,7 @@ from flapenv.files.envelope import (
     require_keys,
     require_place,
 )
-from flapenv.files.plausible import FASTEST, STEEPEST, require_insect
+from flapenv.files.plausible import STROKES, require_insect
 from flapenv.files.strokes import stroke_of
 from flapenv.insects import Insect
 from flapenv.problem import HoverProblem, StrokeBox
@@ -64,7 +65,7 @@ class WingFile:
                 if bounds is None:
                     raise TypeError(f"bounds of {name} = null are not allowed; allowed: [lower, upper] or one number")
             box = StrokeBox(**self.limits)
-            _require_bounds(box, float(self.insect.stroke.frequency))
+            _require_bounds(box, self.insect)
         object.__setattr__(self, "limits", {name: getattr(box, name) for name in self.limits})
 
     def problem(self, base: HoverProblem) -> HoverProblem:
@@ -105,18 +106,13 @@ class WingFile:
         return common
 
 
-def _require_bounds(box: StrokeBox, own_frequency: float) -> None:
+def _require_bounds(box: StrokeBox, insect: Insect) -> None:
     """Refuse bounds beyond what is allowed of the strokes themselves."""
-    for field, most, unit in (
-        ("frequency", FASTEST, " Hz"),
-        ("frequency_ratio", FASTEST / own_frequency, f", as {FASTEST:g} Hz are over the insect's own"),
-        ("pitch_shape", STEEPEST, ""),
-    ):
-        bounds = getattr(box, field)
-        if bounds is not None and bounds[1] > most:
-            raise ValueError(
-                f"upper bound of {field} = {bounds[1]:.6g} is not allowed; allowed: up to {most:.6g}{unit}"
-            )
+    for name, (low, high) in STROKES.items():
+        own = float(getattr(insect.stroke, name)) if box.is_relative(name) else 1.0
+        field, unit = (f"{name}_ratio", "") if box.is_relative(name) else (name, STROKE_PARAMETERS[name].unit)
+        for end, bound in zip(("lower", "upper"), getattr(box, field), strict=True):
+            require_real(f"{end} bound of {field}", bound, low / own, high / own, unit=unit)
 
 
 def read_wing(path: str | os.PathLike[str]) -> WingFile:

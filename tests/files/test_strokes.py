@@ -170,6 +170,7 @@ def results(**insects: Any) -> dict[str, Any]:
             with_entry(frequency=5e-324),
             r"strokes\[0\]: frequency = 4.9.*e-324 is not allowed; allowed: .* \[0.1, 5000\]",
         ),
+        (with_entry(flap_amplitude=1e-300), r"flap_amplitude = 1e-300 is not allowed; allowed: finite, in \[0.001, 3"),
         (with_entry(pitch_shape=1e308), r"pitch_shape = 1e.308 is not allowed; allowed: finite, in \[0, 1e.06\]"),
         (with_entry(frequency="a\n\x1b[31m\u2028" + "b" * 10**6), r"frequency = .a.*b. is not a number"),
         (with_entry(**{"a\n\u0085": 1}), r"unknown key 'a.n.x85'"),
