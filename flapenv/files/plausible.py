@@ -27,7 +27,7 @@ STROKES: dict[str, tuple[float, float]] = {
 """Where a file allows less than a `Stroke` [its SI units].
 
 The frequency goes from a 260th of Table 1's least, 26.3 Hz, to 20 times its largest, 254 Hz; the amplitude from 0.06°,
-Table 1's being 45° to 88.5°; Cθ is 5 there, and from some 1000 on the pitch is a square wave to every digit shown."""
+Table 1's being 45° to 88.5°; Cθ → ∞ is a square wave of the pitch, and its largest value just keeps numbers finite."""
 SLENDERNESS = (1.0, 20.0)
 """Aspect ratio of one wing [-]; Table 1's are 2.84 to 5.34, the lifting line is good above 2.8 (`ASPECT_RATIOS`)."""
 CENTRES = (0.38, 0.65)
