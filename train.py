@@ -9,9 +9,9 @@ from flapenv.aero.checks import allowed
 COMMANDS = {
     "benchmark": "agents.benchmark.command",
     "compare": "agents.competition.command",
-    "evaluate": "agents.evaluate_command",
-    "explore": "agents.explore_command",
-    "optimum": "agents.optimum_command",
+    "evaluate": "agents.commands.evaluate",
+    "explore": "agents.commands.explore",
+    "optimum": "agents.commands.optimum",
 }
 """Where each command NAME is, as NAME_command; without one of them a policy is trained."""
 
@@ -28,7 +28,7 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *_: print(f"train.py: {message}", file=sys.stderr)
-            command = getattr(import_module(COMMANDS.get(name, "agents.train_command")), f"{name}_command")
+            command = getattr(import_module(COMMANDS.get(name, "agents.commands.train")), f"{name}_command")
             return int(command(rest))
     except ImportError as missing:
         print(f"train.py: {missing}; install the learners: pip install -e '.[train]'", file=sys.stderr)

@@ -11,7 +11,7 @@ from agents.benchmark.report import text_report, write_report
 from agents.benchmark.run_queue import CommandOf, Outcome
 from agents.benchmark.runner import BENCHMARKED, ROOT, BenchmarkConfig, finished_runs, run_benchmark
 from agents.benchmark.training_run import run_command
-from agents.one_line_parser import OneLineParser
+from agents.commands.one_line_parser import OneLineParser
 
 
 def benchmark_parser() -> argparse.ArgumentParser:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from agents.benchmark.run_queue import CommandOf, train_all
 from agents.benchmark.training_run import Run, registered, run_command
-from agents.one_line_parser import OneLineParser
+from agents.commands.one_line_parser import OneLineParser
 from agents.run_folder import RESULTS, RUNS, write_atomically
 from flapenv.aero.checks import require_count, require_name
 from flapenv.insects import INSECTS

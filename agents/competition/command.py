@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from agents.one_line_parser import OneLineParser
+from agents.commands.one_line_parser import OneLineParser
 
 
 def parser() -> argparse.ArgumentParser:

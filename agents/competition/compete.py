@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from agents.comparison import Comparison
 from agents.competition.budget import Budget, Trace
 from agents.competition.competitors import COMPETITORS, load_libraries, run
+from agents.evaluation.comparison import Comparison
 from agents.policy_file import load_policy
 from flapenv.aero.checks import record, require_count, require_name
 from flapenv.envs import HoverVectorEnv

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import Any
 
-from agents.comparison import Comparison
+from agents.evaluation.comparison import Comparison
 from agents.explorer.controls import OWN_WING, read_insect
 from agents.policy_file import load_policy
 from flapenv.aero.checks import require_name

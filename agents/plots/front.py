@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from agents.assessment_table import LEARNED
+from agents.evaluation.assessment_table import LEARNED
 from agents.plots.names import plain
 from agents.plots.style import STYLES, styled
 from flapenv.assessment import StrokeAssessment

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from agents.assessment_table import LEARNED
+from agents.evaluation.assessment_table import LEARNED
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
 

@@ -12,7 +12,7 @@ from agents.tasks.task import Task
 from flapenv.read_json import read_object
 
 if TYPE_CHECKING:
-    from agents.evaluated import Evaluated
+    from agents.evaluation.evaluated import Evaluated
     from agents.training import TrainingConfig, TrainingResult
 
 

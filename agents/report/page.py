@@ -11,7 +11,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
-from agents.assessment_table import assessment_table
+from agents.evaluation.assessment_table import assessment_table
 from agents.plots import style
 from agents.plots.beat import SCRIPT as BEAT_SCRIPT
 from agents.report.content import ReportContent

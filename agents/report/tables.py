@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from agents.assessment_table import grouped, number, table_row
+from agents.evaluation.assessment_table import grouped, number, table_row
 from agents.plots.sensitivities import STEPS, step_costs
 from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS

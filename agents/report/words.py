@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from agents.assessment_table import is_own, ranking_sentence
+from agents.evaluation.assessment_table import is_own, ranking_sentence
 from agents.report.content import ReportContent
 from flapenv.assessment import StrokeAssessment
 

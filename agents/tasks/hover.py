@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.comparison import Comparison
+from agents.evaluation.comparison import Comparison
 from agents.predictor import Predictor
 from agents.tasks.stroke_verdict import verdict_of
 from agents.tasks.task import Verdict

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.assessment_table import LEARNED
+from agents.evaluation.assessment_table import LEARNED
 from flapenv.assessment import StrokeAssessment
 from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib, verbatim
 

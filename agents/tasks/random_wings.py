@@ -3,8 +3,8 @@
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from agents.assessment_table import assessment_table
-from agents.comparison import Comparison
+from agents.evaluation.assessment_table import assessment_table
+from agents.evaluation.comparison import Comparison
 from agents.predictor import Predictor
 from agents.tasks.task import Verdict
 from agents.tasks.wing_flights import WingFlights, WingPool

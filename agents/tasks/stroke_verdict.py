@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from agents.assessment_table import LEARNED, assessment_table
-from agents.comparison import mean_gap, worst_gap
+from agents.evaluation.assessment_table import LEARNED, assessment_table
+from agents.evaluation.comparison import mean_gap, worst_gap
 from agents.tasks.task import Verdict
 from flapenv.assessment import StrokeAssessment
 from flapenv.insects import Insect, described

@@ -13,7 +13,7 @@ from sb3_contrib import RecurrentPPO
 
 from agents.actor import Actor
 from agents.actor_of import actor_of
-from agents.noisy_actuators import NoisyActuators
+from agents.evaluation.noisy_actuators import NoisyActuators
 from agents.policy_card import PolicyCard
 from agents.policy_file import load_policy, save_policy
 from agents.recurrent_actor import LstmCell, RecurrentActor

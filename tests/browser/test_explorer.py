@@ -13,7 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Page, expect
 
 import flapenv
-from agents.explore_command import answering, listen
+from agents.commands.explore import answering, listen
 from agents.explorer.app import make_app
 from flapenv.files import read_strokes
 

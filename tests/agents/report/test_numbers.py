@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from agents.assessment_table import number
+from agents.evaluation.assessment_table import number
 from agents.report import ReportContent
 from agents.report.page import report_page
 from agents.report.tables import models_table, results_table, steps_table, strokes_table

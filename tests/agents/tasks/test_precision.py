@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from agents import comparison, heave_flights
+from agents import heave_flights
+from agents.evaluation import comparison
 from agents.tasks import HoverTask, adapt, heave, waveform, wing_flights
 from agents.tasks.adapt import HoverAdaptTask
 from agents.tasks.heave import HeaveTask

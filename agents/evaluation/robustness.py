@@ -4,8 +4,8 @@ import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
-from agents.noisy_beats import noise_table, noisy_beats
-from agents.other_models import model_table, other_models
+from agents.evaluation.noisy_beats import noise_table, noisy_beats
+from agents.evaluation.other_models import model_table, other_models
 from agents.predictor import Predictor
 from flapenv.insects import Insect
 from flapenv.problem import HoverProblem

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from agents.noisy_actuators import NOISE_SHARE, NoisyActuators
+from agents.evaluation.noisy_actuators import NOISE_SHARE, NoisyActuators
+from agents.evaluation.scored_strokes import make_env, scores
 from agents.predictor import Predictor
-from agents.scored_strokes import make_env, scores
 from flapenv.aero.checks import record, require_count
 from flapenv.envs import HoverVectorEnv
 from flapenv.insects import Insect

@@ -9,7 +9,7 @@ import pytest
 from werkzeug.serving import BaseWSGIServer
 
 import train
-from agents import explore_command
+from agents.commands import explore as explore_command
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from agents.evaluation.scored_strokes import make_env, scores
 from agents.predictor import Predictor
-from agents.scored_strokes import make_env, scores
 from flapenv.aero.checks import record
 from flapenv.envs import HoverVectorEnv
 from flapenv.insects import Insect

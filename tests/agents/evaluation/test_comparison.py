@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from agents.assessment_table import assessment_table
-from agents.comparison import Comparison, mean_gap
+from agents.evaluation.assessment_table import assessment_table
+from agents.evaluation.comparison import Comparison, mean_gap
 from flapenv import INSECTS, HoverProblem, evaluate, load_insect, optimum
 from flapenv.coordinates import StrokeCoordinates
 

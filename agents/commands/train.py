@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from agents.one_line_parser import OneLineParser, folder, said
+from agents.commands.one_line_parser import OneLineParser, folder, said
 from flapenv.aero.checks import allowed
 
 CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "versions")

@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from agents.assessment_table import assessment_table, outside_sentences, ranking_sentence, ranking_table
+from agents.evaluation.assessment_table import assessment_table, outside_sentences, ranking_sentence, ranking_table
 from flapenv import INSECTS, HoverProblem, load_insect, optimum
 from flapenv.assessment import StrokeAssessment, assess
 

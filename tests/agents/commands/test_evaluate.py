@@ -75,8 +75,8 @@ def test_a_policy_for_every_wing_flies_named_insects_and_tells_its_costs(
     wings: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("agents.tasks.random_wings.TEST_WINGS", 200)
-    monkeypatch.setattr("agents.wing_costs.WINGS", 200)
-    monkeypatch.setattr("agents.wing_costs.SEARCHED", 2)
+    monkeypatch.setattr("agents.evaluation.wing_costs.WINGS", 200)
+    monkeypatch.setattr("agents.evaluation.wing_costs.SEARCHED", 2)
     code, out, _ = evaluated(capsys, wings, "--insects", "ladybird")
     assert code == 0
     assert "ladybird" in out

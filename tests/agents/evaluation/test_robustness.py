@@ -7,10 +7,10 @@ import json
 import numpy as np
 import pytest
 
-from agents.noisy_actuators import NoisyActuators
-from agents.noisy_beats import noise_table, noisy_beats
-from agents.other_models import ModelBeats, model_table, other_models
-from agents.robustness import robustness
+from agents.evaluation.noisy_actuators import NoisyActuators
+from agents.evaluation.noisy_beats import noise_table, noisy_beats
+from agents.evaluation.other_models import ModelBeats, model_table, other_models
+from agents.evaluation.robustness import robustness
 from flapenv import INSECTS, HoverProblem, evaluate, load_insect, optimum
 from flapenv.coordinates import StrokeCoordinates
 from flapenv.envs import HoverVectorEnv

@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from agents.one_line_parser import OneLineParser, folder, said
-from agents.train_command import what_counts
+from agents.commands.one_line_parser import OneLineParser, folder, said
+from agents.commands.train import what_counts
 
 DEFAULT_POLICY = "hover"
 """The shipped policy that is judged where none is named."""
@@ -15,7 +15,7 @@ DEFAULT_POLICY = "hover"
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    from agents.noisy_actuators import NOISE_SHARE
+    from agents.evaluation.noisy_actuators import NOISE_SHARE
 
     made = OneLineParser(
         prog="train.py evaluate",
@@ -99,8 +99,8 @@ def evaluate_command(arguments: list[str]) -> int:
 
 
 def _asked(options: argparse.Namespace) -> Any:
-    """What the options ask for, an `agents.evaluated.Asked`; wings are read once."""
-    from agents.evaluated import Asked
+    """What the options ask for, an `agents.evaluation.evaluated.Asked`; wings are read once."""
+    from agents.evaluation.evaluated import Asked
     from flapenv.files import read_wing
 
     if options.wing and options.insects:
@@ -158,10 +158,10 @@ def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
     """One verdict as text; files in the folder given.
 
     Raises:
-        ValueError: as `agents.evaluated.evaluated`, like the others.
+        ValueError: as `agents.evaluation.evaluated.evaluated`, like the others.
     """
-    from agents.assessment_table import ranking_table
-    from agents.evaluated import evaluated
+    from agents.evaluation.assessment_table import ranking_table
+    from agents.evaluation.evaluated import evaluated
 
     found = evaluated(subject, asked)
     assessments = found.verdict.assessments

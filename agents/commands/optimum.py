@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.one_line_parser import OneLineParser, folder, said
+from agents.commands.one_line_parser import OneLineParser, folder, said
 
 if TYPE_CHECKING:
     from flapenv import HoverProblem, Insect, Optimum
@@ -120,7 +120,7 @@ def solve(insect: "Insect", problem: "HoverProblem") -> Solved:
 
 def report(solved: list[Solved]) -> str:
     """What people read: a table for each problem, what no CFD covers, and how everything was verified."""
-    from agents.assessment_table import outside_sentences
+    from agents.evaluation.assessment_table import outside_sentences
     from flapenv.assessment import assess
 
     tables: dict[str, list[Solved]] = {}

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import train
-from agents.optimum_command import cases, parser
+from agents.commands.optimum import cases, parser
 from flapenv import INSECTS, HoverProblem, load_insect, optimum, read_strokes, read_wing
 
-ROBOT = Path(__file__).parents[2] / "docs" / "examples" / "robot.json"
+ROBOT = Path(__file__).parents[3] / "docs" / "examples" / "robot.json"
 
 
 def line_of(name: str, text: str) -> list[str]:
@@ -70,7 +70,7 @@ def test_too_little_memory_is_one_line(capsys: pytest.CaptureFixture[str], monke
     def full(_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("agents.optimum_command.cases", full)
+    monkeypatch.setattr("agents.commands.optimum.cases", full)
     assert train.main(["optimum"]) == 2
     assert capsys.readouterr().err == "train.py optimum: not enough memory\n"
 

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 import train as command
-from agents.evaluated import Asked
-from agents.evaluated import evaluated as judged
+from agents.evaluation.evaluated import Asked
+from agents.evaluation.evaluated import evaluated as judged
 from flapenv import INSECTS, HoverProblem, Stroke, load_insect, optimum, read_strokes
 from flapenv.files import NamedStroke, WingFile, write_strokes, write_wing
 from flapenv.simulation import evaluate_by_blade_element
@@ -190,7 +190,7 @@ def test_too_little_memory_is_one_line(capsys: pytest.CaptureFixture[str], monke
     def full(*_: Any) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("agents.evaluated.evaluated", full)
+    monkeypatch.setattr("agents.evaluation.evaluated.evaluated", full)
     assert evaluated(capsys, "hawkmoth") == (2, "", "train.py evaluate: not enough memory\n")
 
 

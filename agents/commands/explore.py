@@ -11,7 +11,7 @@ import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.one_line_parser import OneLineParser, folder
+from agents.commands.one_line_parser import OneLineParser, folder
 from flapenv.aero.checks import require_count, require_name
 
 if TYPE_CHECKING:

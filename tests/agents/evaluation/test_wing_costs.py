@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from agents import wing_costs
+from agents.evaluation import wing_costs
 from flapenv.problem import as_problem
 
 

@@ -5,15 +5,15 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from agents.comparison import Comparison
-from agents.noisy_actuators import NoisyActuators
+from agents.evaluation.comparison import Comparison
+from agents.evaluation.noisy_actuators import NoisyActuators
+from agents.evaluation.stroke_pairs import PUBLISHED, is_strokes, stroke_pairs
 from agents.policy_card import PolicyCard
 from agents.policy_file import find_policy, load_policy, shipped_policies
 from agents.predictor import Predictor
 from agents.presets import Preset
 from agents.recurrent_actor import AnyActor
 from agents.run_folder import real_name
-from agents.stroke_pairs import PUBLISHED, is_strokes, stroke_pairs
 from agents.tasks import TASKS, HoverTask, RandomWingsTask, Task, Verdict
 from agents.tasks.hover_picture import draw_strokes
 from agents.tasks.stroke_verdict import verdict_of
@@ -171,7 +171,7 @@ def _judged(task: Task, flown: Predictor, wings: Sequence[WingFile]) -> Verdict:
 
 def _robustness(actor: AnyActor, task: Task, asked: Asked) -> list[tuple[str, Any, str]]:
     """Noise and other models, of policies of named insects in Hover."""
-    from agents.robustness import robustness
+    from agents.evaluation.robustness import robustness
 
     if not asked.robustness:
         return []
@@ -182,7 +182,7 @@ def _robustness(actor: AnyActor, task: Task, asked: Asked) -> list[tuple[str, An
 
 def _costs(actor: AnyActor, task: Task, card: PolicyCard, asked: Asked) -> list[tuple[str, Any, str]]:
     """What a new wing costs, of policies for random wings."""
-    from agents.wing_costs import costs_of
+    from agents.evaluation.wing_costs import costs_of
 
     if not asked.costs:
         return []

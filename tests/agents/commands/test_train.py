@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 
 import train
+from agents.commands.train import config_of, parser, what_counts
 from agents.presets import DEFAULT_PRESET, PRESETS
-from agents.train_command import config_of, parser, what_counts
 from flapenv import HoverProblem, WingFile, read_wing, write_wing
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 ROBOT = ROOT / "docs" / "examples" / "robot.json"
 
 
