@@ -84,7 +84,7 @@ def check(options: argparse.Namespace) -> None:
     Raises:
         ValueError: for unknown names, a species that is named twice, or a number that is not allowed.
     """
-    from agents.training import LAST_SEED
+    from agents.training_config import LAST_SEED
 
     for name in options.insects:
         require_name("--insects", name, INSECTS)

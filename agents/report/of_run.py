@@ -13,7 +13,7 @@ from flapenv.read_json import read_object
 
 if TYPE_CHECKING:
     from agents.evaluation.evaluated import Evaluated
-    from agents.training import TrainingConfig, TrainingResult
+    from agents.training_config import TrainingConfig, TrainingResult
 
 
 def report_of_run(config: "TrainingConfig", task: Task, result: "TrainingResult") -> Path:

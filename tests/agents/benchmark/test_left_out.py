@@ -8,7 +8,7 @@ import pytest
 from agents.benchmark import left_out, training_run
 from agents.benchmark.training_run import Run
 from agents.presets import PRESETS
-from agents.training import LAST_SEED
+from agents.training_config import LAST_SEED
 
 STAND_IN = """
 import json, pathlib, sys
