@@ -166,7 +166,7 @@ def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
     found = evaluated(subject, asked)
     assessments = found.verdict.assessments
     parts = [f"{found.title}\n{found.verdict.text}"]
-    if any(one.rankings and one.stroke != one.insect.stroke for one in assessments):
+    if any(one.rankings and not one.is_own for one in assessments):
         parts.append(ranking_table(assessments))
     parts += found.told
     if kept is not None:

@@ -1,13 +1,12 @@
 """Assessed strokes as people read them: the table, what other models say, and what lies outside the validated range."""
 
-import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from flapenv.assessment import StrokeAssessment
 from flapenv.assessment.model_errors import typical_errors
-from flapenv.assessment.validity import Quantity
+from flapenv.assessment.validity import ANGLES, BOX, CASES, Quantity
 from flapenv.tables import text_table
 
 LEARNED = "learned"
@@ -64,8 +63,8 @@ def table_row(result: StrokeAssessment) -> tuple[str, ...]:
         number(result.cfd_power, 0),
         f"{result.own_specific_power:.1f}",
         f"{result.own_weight_support:.3f}",
-        number(result.saving, 0, percent=True),
-        number(result.saving_uncertainty, 0, percent=True),
+        "-" if result.is_own else number(result.saving, 0, percent=True),
+        "-" if result.is_own else number(result.saving_uncertainty, 0, percent=True),
         number(result.saving_to_cfd, 0, percent=True),
     )
 
@@ -113,7 +112,7 @@ def ranking_sentence(results: Sequence[StrokeAssessment], called: str = LEARNED)
         results: one an insect; those whose stroke is the insect's own are left out.
         called: what the strokes are, in a word.
     """
-    judged = [(result.insect.name, ranking) for result in results for ranking in result.rankings if not is_own(result)]
+    judged = [(result.insect.name, ranking) for result in results for ranking in result.rankings if not result.is_own]
     if not judged:
         return ""
     lost: dict[str, list[str]] = {}
@@ -125,22 +124,17 @@ def ranking_sentence(results: Sequence[StrokeAssessment], called: str = LEARNED)
     return f"{called} needs less than the own stroke in {held} of {len(judged)} cases of other models{end}"
 
 
-def is_own(result: StrokeAssessment) -> bool:
-    """Whether the stroke is the insect's own but for rounding."""
-    pairs = zip(vars(result.stroke).values(), vars(result.insect.stroke).values(), strict=True)
-    return all(math.isclose(one, own, rel_tol=1e-4, abs_tol=1e-9) for one, own in pairs)
-
-
 def outside_sentences(results: Sequence[StrokeAssessment]) -> str:
-    """What of the strokes and wings no CFD case covers, and what lies beyond the box; with the insects it holds for."""
-    validated = _grouped({result.insect.name: result.outside for result in results})
-    box = _grouped({result.insect.name: result.beyond_box for result in results})
-    lines = (
-        ["outside of what the CFD cases cover, or of the angles that the model is made for:", *validated]
-        if validated
-        else []
-    )
-    return "\n".join([*lines, *(["outside of the problem's box, so that a gap may be negative:", *box] if box else [])])
+    """What lies outside of the CFD cases, the model's angles and the problem's box, with the insects it holds for."""
+    lines = []
+    for basis, remark in ((CASES, ""), (ANGLES, ""), (BOX, ", so that a gap may be negative")):
+        found = {
+            result.insect.name: [one for one in (*result.outside, *result.beyond_box) if one.basis == basis]
+            for result in results
+        }
+        if any(found.values()):
+            lines += [f"outside of {basis}{remark}:", *_grouped(found)]
+    return "\n".join(lines)
 
 
 def _grouped(outside: Mapping[str, Sequence[Quantity]]) -> list[str]:

@@ -96,7 +96,7 @@ def sensitivities_figure(strokes: Sequence[StrokeAssessment]) -> PlacedFigure | 
 def strokes_of(one: StrokeAssessment, called: str) -> dict[str, Stroke]:
     """The strokes of an insect that are shown beside each other, by label."""
     best = "optimal" if one.best.feasible else "most lift"
-    own = {} if one.stroke == one.insect.stroke else {"own": one.insect.stroke}
+    own = {} if one.is_own else {"own": one.insect.stroke}
     return {called: one.stroke, best: one.best.stroke, **own}
 
 

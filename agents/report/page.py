@@ -112,7 +112,7 @@ def _of_strokes(content: ReportContent) -> dict[str, Any]:
     strokes, called = content.verdict.assessments, content.called
     if not strokes:
         return {"results": None, "insects": (), "savings": None}
-    others = [one for one in strokes if one.stroke != one.insect.stroke]  # an own stroke saves nothing of itself
+    others = [one for one in strokes if not one.is_own]  # an own stroke saves nothing of itself
     return {
         "results": results_table(strokes, called),
         "savings": savings_figure(others, called) if others else None,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from agents.evaluation.assessment_table import is_own, ranking_sentence
+from agents.evaluation.assessment_table import ranking_sentence
 from agents.report.content import ReportContent
 from flapenv.assessment import StrokeAssessment
 
@@ -38,7 +38,7 @@ def _uncertainty(strokes: Sequence[StrokeAssessment]) -> str:
     lift = f"{span([100 * one.weight_share for one in strokes], 0)} % in weight support"
     shares = [100 * share for one in strokes if (share := one.power_share) is not None]
     power = f" and {span(shares, 0)} % in power" if shares else ""
-    end = "" if all(is_own(one) for one in strokes) else ", which is taken as the uncertainty of these numbers: nobody"
+    end = "" if all(one.is_own for one in strokes) else ", which is taken as the uncertainty of these numbers: nobody"
     end += " has run CFD on these strokes" if end else ""
     if all(one.errors.weight_support is None for one in strokes):
         return f"In the eight CFD cases this model is typically off by {lift}{power}{end}."
@@ -47,7 +47,7 @@ def _uncertainty(strokes: Sequence[StrokeAssessment]) -> str:
 
 def _savings(strokes: Sequence[StrokeAssessment]) -> list[str]:
     """What is saved of the own strokes' power, and where that is less than is known."""
-    others = [one for one in strokes if not is_own(one) and one.saving is not None]
+    others = [one for one in strokes if not one.is_own and one.saving is not None]
     if not others:
         return []
     saved = span([100 * (one.saving or 0.0) for one in others], 0)

@@ -72,7 +72,12 @@ class StrokeAssessment:
 
     @property
     def saving_uncertainty(self) -> float | None:
-        """Of `saving` [-]: how far it is from `saving_to_cfd`, or would typically be where there is no CFD."""
+        """Of `saving` [-]: how far it is from `saving_to_cfd`, or would typically be where there is no CFD.
+
+        None of the insect's own stroke, too, which saves nothing of itself in any model.
+        """
+        if self.is_own:
+            return None
         error = self.errors.hovering_power
         error = typical_errors(self.problem.model).hovering_power if error is None else error
         return None if self.saving is None or error is None else (1 - self.saving) * abs(error)
@@ -117,6 +122,12 @@ class StrokeAssessment:
         if self.problem.model.accounting == "positive":
             return None
         return saved(self.hovering_power, cfd_hovering_power(self.insect.cfd))
+
+    @property
+    def is_own(self) -> bool:
+        """Whether the stroke is the insect's own but for rounding."""
+        pairs = zip(vars(self.stroke).values(), vars(self.insect.stroke).values(), strict=True)
+        return all(math.isclose(one, own, rel_tol=1e-4, abs_tol=1e-9) for one, own in pairs)
 
     @property
     def flags(self) -> tuple[str, ...]:

@@ -9,10 +9,13 @@ from flapenv.aero.stroke import Stroke
 from flapenv.insects import INSECTS, Insect, load_insect
 from flapenv.problem import StrokeBox
 
+ANGLE = "α at mid-stroke"
 AIR_VISCOSITY = 1.789e-5
 """μ of air at 15 °C [Pa s] (International Standard Atmosphere); it hardly changes with density."""
 SMALLEST_ANGLE, LARGEST_ANGLE = math.radians(25), math.radians(45)
 """Angles of attack that wings usually have, where the model's accuracy is good [rad] (Part II, section 2.3.2)."""
+CASES, ANGLES, BOX = "the CFD cases", "the angles that the model is made for", "the problem's box"
+"""What ranges are of."""
 ROUNDING = 1e-4
 """Of a bound, by which a stroke found in single precision may be beyond it."""
 SLACK = 0.01
@@ -29,6 +32,7 @@ class Quantity:
         low: lower end of the range [unit].
         high: upper end [unit].
         unit: as it is printed.
+        basis: what the range is of.
     """
 
     name: str
@@ -36,6 +40,7 @@ class Quantity:
     low: float
     high: float
     unit: str = ""
+    basis: str
 
     def is_outside(self, slack: float) -> bool:
         """Whether the value is beyond one of the ends by more than `slack` times that end."""
@@ -89,13 +94,11 @@ def outside_validated(insect: Insect, stroke: Stroke, *, air_density: float = 1.
         stroke: one stroke, scalar fields.
         air_density: ρ [kg/m³].
     """
-    ranges = _validated_ranges()
-    found = _quantities(insect, stroke, air_density)
-    judged = [
-        Quantity(name=name, value=value, low=low, high=high, unit=unit)
-        for (name, unit), value in found.items()
-        for low, high in (ranges[name],)
-    ]
+    ranges, judged = _validated_ranges(), []
+    for (name, unit), value in _quantities(insect, stroke, air_density).items():
+        low, high = ranges[name]
+        basis = ANGLES if name == ANGLE else CASES
+        judged.append(Quantity(name=name, value=value, low=low, high=high, unit=unit, basis=basis))
     return tuple(quantity for quantity in judged if quantity.is_outside(SLACK))
 
 
@@ -111,14 +114,14 @@ def outside_box(insect: Insect, stroke: Stroke, box: StrokeBox) -> tuple[Quantit
     for name, parameter in STROKE_PARAMETERS.items():
         low, high = (_shown(parameter, bound) for bound in box.bounds(name, insect.reference))
         value, unit = _shown(parameter, getattr(stroke, name)), _shown_unit(parameter)
-        judged.append(Quantity(name=parameter.symbol, value=value, low=low, high=high, unit=unit))
+        judged.append(Quantity(name=parameter.symbol, value=value, low=low, high=high, unit=unit, basis=BOX))
     return tuple(quantity for quantity in judged if quantity.is_outside(ROUNDING))
 
 
 def _quantities(insect: Insect, stroke: Stroke, air_density: float) -> dict[tuple[str, str], float]:
     """What is held against the CFD cases, by name and unit."""
     found = {
-        ("α at mid-stroke", "°"): math.degrees(angle_at_mid_stroke(stroke)),
+        (ANGLE, "°"): math.degrees(angle_at_mid_stroke(stroke)),
         ("Re", ""): reynolds_number(insect, stroke, air_density=air_density),
         ("AR", ""): float(insect.wing.aspect_ratio),
         ("r̂₁", ""): float(insect.wing.r1_hat),
@@ -145,5 +148,5 @@ def _validated_ranges() -> dict[str, tuple[float, float]]:
     insects = [load_insect(name) for name in INSECTS]
     cases = [_quantities(insect, insect.stroke, 1.225) for insect in insects]
     ranges = {key[0]: (min(values), max(values)) for key in cases[0] for values in ([case[key] for case in cases],)}
-    ranges["α at mid-stroke"] = math.degrees(SMALLEST_ANGLE), math.degrees(LARGEST_ANGLE)
+    ranges[ANGLE] = math.degrees(SMALLEST_ANGLE), math.degrees(LARGEST_ANGLE)
     return ranges
