@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+import train
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
@@ -17,6 +19,14 @@ def test_every_code_block_runs_in_order(tmp_path: Path, monkeypatch: pytest.Monk
     for block in blocks:
         exec(compile(block, "README.md", "exec"), names)
     assert (tmp_path / "robot.png").exists()
+
+
+def test_the_table_of_results_is_what_the_shipped_policy_gives(capsys: pytest.CaptureFixture[str]) -> None:
+    assert train.main(["evaluate", "hover"]) == 0
+    printed = capsys.readouterr().out.splitlines()[1:]
+    assert len(printed) > 30
+    for line in printed:
+        assert f"    {line}\n" in README or not line
 
 
 def test_every_picture_and_link_leads_somewhere() -> None:
