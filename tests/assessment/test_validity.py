@@ -7,7 +7,7 @@ import pytest
 
 from flapenv import INSECTS, PROBLEMS, Insect, StrokeBox, Wing, load_insect, optimum
 from flapenv.assessment import outside_validated, reynolds_number
-from flapenv.assessment.validity import angle_at_mid_stroke, outside_box
+from flapenv.assessment.validity import ANGLES, CASES, angle_at_mid_stroke, outside_box
 
 
 def test_reynolds_numbers_of_the_cases_run_from_the_fruit_fly_to_the_hawkmoth() -> None:
@@ -37,11 +37,13 @@ def test_the_reynolds_number_scales_as_speed_times_size_times_density(hawkmoth: 
 def test_no_own_stroke_is_outside_but_the_fruit_flys_angle(insect: Insect) -> None:
     outside = outside_validated(insect, insect.stroke)
     assert [quantity.name for quantity in outside] == (["α at mid-stroke"] if insect.name == "fruitfly" else [])
+    assert {quantity.basis for quantity in outside} <= {ANGLES}  # CFD was run on it
 
 
 def test_the_optimum_is_outside_in_its_waveform_and_amplitude(insect: Insect) -> None:
     outside = {quantity.name: quantity for quantity in outside_validated(insect, optimum(insect).stroke)}
     assert {"φmax", "Cφ", "Cθ"} <= set(outside)
+    assert {quantity.basis for quantity in outside.values()} == {CASES}
     assert "α at mid-stroke" not in outside
     assert outside["φmax"].text == "φmax = 90°, beyond 45 to 88.5°"
 

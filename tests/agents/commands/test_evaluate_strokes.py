@@ -105,6 +105,12 @@ def test_a_wing_of_ones_own_is_held_against_its_limits(tmp_path: Path, capsys: p
     assert code == 0
     assert "beyond 40 to 60°: robot" in out
     assert line_of(out, "robot")[4] == f"{0.109 * float(line_of(out, 'robot')[3]):.1f}"  # the rms of the eight
+    moth = dataclasses.replace(load_insect("hawkmoth"), name="moth", k_table=None)
+    write_wing(tmp_path / "moth.json", WingFile(insect=moth, limits={"frequency": (22.0, 30.0)}))
+    files = [word for name in ("robot", "moth") for word in ("--wing", tmp_path / f"{name}.json")]
+    _, both, _ = evaluated(capsys, "random-wings", *files)
+    alone = evaluated(capsys, "random-wings", "--wing", tmp_path / "moth.json")[1]
+    assert [line_of(both, name) for name in ("robot", "moth")] == [line_of(out, "robot"), line_of(alone, "moth")]
     write_strokes(tmp_path / "stroke.json", [NamedStroke(insect=robot, stroke=SLOW)])
     _, out, _ = evaluated(capsys, tmp_path / "stroke.json", "--wing", tmp_path / "robot.json")
     assert line_of(out, "robot")[1] == f"{evaluate_by_blade_element(robot, SLOW, **FINE)[0]:.4f}"
