@@ -53,7 +53,7 @@ def table_row(result: StrokeAssessment) -> tuple[str, ...]:
     return (
         result.insect.name,
         f"{result.weight_support:.4f}",
-        f"{result.weight_uncertainty:.2f}",
+        f"{result.weight_uncertainty:.3f}",
         f"{result.specific_power:.2f}",
         number(result.power_uncertainty, 1),
         f"{best.specific_power:.2f}" if best.feasible else "none",

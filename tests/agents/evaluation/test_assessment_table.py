@@ -8,7 +8,7 @@ from flapenv.assessment import StrokeAssessment, assess
 
 COLUMNS = (
     ("weight_support", 4),
-    ("weight_uncertainty", 2),
+    ("weight_uncertainty", 3),
     ("specific_power", 2),
     ("power_uncertainty", 1),
     ("optimum_specific_power", 2),

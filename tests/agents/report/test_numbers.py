@@ -35,7 +35,7 @@ def test_the_table_of_the_report_says_what_results_json_does(content: ReportCont
     assert [row[0] for row in table[1:]] == list(INSECTS)
     for name, weight, power, best, bound, gap, cfd, own, own_weight, saved, by_cfd in table[1:]:
         entry = kept[name]
-        assert weight == f"{entry['weight_support']:.4f} ± {entry['weight_uncertainty']:.2f}"
+        assert weight == f"{entry['weight_support']:.4f} ± {entry['weight_uncertainty']:.3f}"
         assert power == f"{entry['specific_power']:.2f} ± {entry['power_uncertainty']:.1f}"
         assert best == f"{entry['optimum_specific_power']:.2f}"
         assert bound == f"{entry['lower_bound']:.2f}"
