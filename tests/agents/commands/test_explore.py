@@ -44,7 +44,8 @@ def test_what_is_missing_is_told_with_its_mend(missing: str) -> None:
     """In a process of its own, which has imported nothing yet."""
     asked = f"import sys; sys.modules[{missing!r}] = None; import train; sys.exit(train.main(sys.argv[1:]))"
     command = [sys.executable, "-c", asked, "explore", "--no-browser", "--port", "0"]
-    ended = subprocess.run(command, cwd=Path(train.__file__).parent, capture_output=True, text=True, timeout=60)
+    root = Path(train.__file__).parent
+    ended = subprocess.run(command, check=False, cwd=root, capture_output=True, text=True, timeout=60)
     assert ended.returncode == 2
     assert missing in ended.stderr
     assert "pip install -e '.[explore]'" in ended.stderr

@@ -15,7 +15,7 @@ from dash import Dash
 import flapenv
 from agents.explorer import cases
 from agents.explorer.app import make_app
-from agents.explorer.controls import OWN_WING
+from agents.explorer.controls import OWN_WING, stroke_controls
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.files import WingFile, read_strokes
 from flapenv.optimum import optimum
@@ -146,7 +146,9 @@ def test_a_number_that_is_not_allowed_is_told_in_one_line(page: Any, field: str,
     text = shown["props"]["children"]
     assert "\n" not in text
     assert "Traceback" not in text
-    assert field in text or "reload the page" in text
+    label = {control.name: control.short_label for control in stroke_controls(flapenv.load_insect("hawkmoth"))}
+    assert label.get(field, "reload the page") in text
+    assert "[" not in text.replace(repr(value), "")  # neither of an array nor of an interval
 
 
 @pytest.mark.parametrize(
@@ -225,7 +227,6 @@ def test_figures_and_remarks_follow_the_sliders(page: Any) -> None:
     calm = [page.values["case"], "optimal", *(page.values[name] for name in names)]
     answer = page.ask("remarks.children", changed="calm.data", calm=calm)
     told = words(answer["remarks"]["children"])
-    assert "outside of what CFD has checked" in told
     assert {"figure-beat", "figure-forces", "figure-waveforms", "figure-terms"} < set(answer)
     assert "NaN" not in json.dumps(answer)
     for bad in (None, [], [None] * 8, [*calm[:2], *[math.nan] * 6], [calm[0], "own stroke", *calm[2:]], "x"):
