@@ -46,7 +46,10 @@ def numbers(case: Case, stroke: Stroke) -> list[Any]:
         "saving": saving,
         "stroke": {name: float(getattr(stroke, name)) for name in STROKE_PARAMETERS},
     }
-    printed = html.Div([*note(case), html.Div(_in_words(case, stroke))], className="printed")
+    told = (f"problem {PROBLEM_LABELS[case.explored]}", f"stroke: {_in_words(case, stroke)}")
+    printed = html.Div(
+        [*note(case), *map(html.Div, told)], className="printed"
+    )  # where there are no controls: on paper
     return [html.Div(tiles, className="tiles"), printed, html.Div(json.dumps(exact), id="exact", hidden=True)]
 
 
@@ -59,10 +62,9 @@ def _tile(name: str, label: str, text: str, unit: str, exact: float | None) -> h
 
 
 def _in_words(case: Case, stroke: Stroke) -> str:
-    """Problem and stroke in a line, for paper, on which there are no controls."""
+    """A stroke's six numbers in a line."""
     shown = zip(stroke_controls(case.insect), shown_stroke(stroke, case.insect), strict=True)
-    numbers = [f"{control.short_label} = {control.with_unit(value)}" for control, value in shown]
-    return f"problem {PROBLEM_LABELS[case.explored]}; {', '.join(numbers)}"
+    return ", ".join(f"{control.short_label} = {control.with_unit(value)}" for control, value in shown)
 
 
 def _percent(share: float | None) -> str:
@@ -88,12 +90,7 @@ def note(case: Case) -> list[Any]:
     if own.cfd_power is not None:
         lines.append(f"CFD of its own stroke: {own.cfd_power:.4g} W/kg, this model {own.own_specific_power:.4g} W/kg")
     if case.is_typed:
-        shown = zip(stroke_controls(case.insect), shown_stroke(case.insect.stroke, case.insect), strict=True)
-        made_up = {control.name: control.with_unit(value) for control, value in shown}
-        lines.append(
-            f"its own stroke is made up: sinusoids at the reference frequency, amplitude {made_up['flap_amplitude']}, "
-            f"α_mid {made_up['alpha_mid']}"
-        )
+        lines.append(f"its own stroke is made up: {_in_words(case, case.insect.stroke)}")
     if case.explored != LEARNED_IN.name:
         lines.append(f"“{BUTTONS['learned']}” is that of a policy that was trained in problem A")
     return [html.Div(line) for line in lines]

@@ -226,7 +226,6 @@ def test_figures_and_remarks_follow_the_sliders(page: Any) -> None:
     names = ("frequency", "flap_amplitude", "flap_shape", "pitch_shape", "alpha_mid", "pitch_phase")
     calm = [page.values["case"], "optimal", *(page.values[name] for name in names)]
     answer = page.ask("remarks.children", changed="calm.data", calm=calm)
-    told = words(answer["remarks"]["children"])
     assert {"figure-beat", "figure-forces", "figure-waveforms", "figure-terms"} < set(answer)
     assert "NaN" not in json.dumps(answer)
     for bad in (None, [], [None] * 8, [*calm[:2], *[math.nan] * 6], [calm[0], "own stroke", *calm[2:]], "x"):
