@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import threading
+import warnings
 from collections import OrderedDict
 from collections.abc import Mapping
 from functools import cached_property
@@ -79,7 +80,9 @@ class Case:
     def learned(self) -> Stroke:
         """The stroke of the shipped policy that knows the insect, or any wing."""
         actor, _ = load_policy(POLICY if self.insect.name in INSECTS else WING_POLICY)
-        info = Comparison([self.insect], LEARNED_IN).beat(actor)
+        with warnings.catch_warnings():  # of a wing that cannot hover, which the page says itself
+            warnings.simplefilter("ignore", UserWarning)
+            info = Comparison([self.insect], LEARNED_IN).beat(actor)
         return Stroke(**{name: float(info[f"stroke/{name}"][0]) for name in STROKE_PARAMETERS})
 
 
