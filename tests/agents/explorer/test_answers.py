@@ -149,3 +149,17 @@ def test_a_wing_with_one_other_number_is_another_wing(page: Any, field: str, val
     before = exact(page.numbers(frequency=100.0))
     page.choose(**{field: value})
     assert exact(page.numbers())["weight_support"] != before["weight_support"]
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "wanted"),
+    [
+        ("mean_chord", 0.02, "wing length R over mean chord c̄ = 650 is not allowed; allowed: 1 to 20"),
+        ("mass", 1e6, "mass of the body = 1e+06 mg on two wings of 52 mm² each is a wing loading of"),
+    ],
+)
+def test_sizes_that_do_not_go_together_are_told_in_the_pages_words(
+    page: Any, field: str, value: float, wanted: str
+) -> None:
+    answer = page.ask("case.data", insect=OWN_WING, **{field: value})
+    assert words(answer["note"]["children"]).startswith(wanted)
