@@ -181,7 +181,6 @@ def test_field_thumb_and_numbers_agree_whatever_is_typed(opened: Page) -> None:
 
 
 def test_a_field_shows_all_digits_of_what_is_used(opened: Page) -> None:
-    opened.evaluate("document.querySelector('#alpha_mid-field').scrollIntoView()")
     stroke = changes(opened, lambda: opened.click("#load-learned"))["stroke"]
     fields = opened.locator(".slider input")
     assert fields.count() == 6
