@@ -11,7 +11,6 @@ from agents.explorer.controls import OWN_WING, read_stroke
 from agents.plots.beat import beat
 from agents.plots.cycle import forces, terms, waveforms
 from flapenv.assessment import assess, rankings
-from tests.agents.explorer.test_app import exact, words
 
 NAMES = ("frequency", "flap_amplitude", "flap_shape", "pitch_shape", "alpha_mid", "pitch_phase")
 
@@ -24,15 +23,15 @@ def drawn(page: Any, beside: str = "optimal") -> dict[str, Any]:
 
 
 def remarks(page: Any) -> str:
-    return words(drawn(page)["remarks"]["children"])
+    return page.words(drawn(page)["remarks"]["children"])
 
 
-def tiles(children: Any) -> dict[str, str]:
-    """Texts of the tiles with their units."""
+def tiles(page: Any) -> dict[str, str]:
+    """Texts of the tiles of what the sliders say, with their units."""
     found = {}
-    for tile in children[0]["props"]["children"]:
+    for tile in page.numbers()[0]["props"]["children"]:
         label, *rest = tile["props"]["children"]
-        found[words(label)] = words(rest)
+        found[page.words(label)] = page.words(rest)
     return found
 
 
@@ -69,7 +68,7 @@ def test_tiles_are_named_for_what_they_hold(page: Any) -> None:
     assert judged.gap is not None
     assert judged.saving is not None
     assert judged.saving != pytest.approx(judged.gap)
-    assert tiles(page.numbers()) == {
+    assert tiles(page) == {
         "weight support Λ": f"{judged.weight_support:#.5g} ",
         "power P*": f"{judged.specific_power:#.5g} W/kg",
         "gap to the optimum": f"{100 * judged.gap:#.5g} %",
@@ -78,7 +77,7 @@ def test_tiles_are_named_for_what_they_hold(page: Any) -> None:
 
 
 def test_the_note_tells_optimum_bound_cfd_and_model_apart(page: Any) -> None:
-    told, judged = words(page.choose(insect="hawkmoth")["note"]["children"]), assess("hawkmoth")
+    told, judged = page.words(page.choose(insect="hawkmoth")["note"]["children"]), assess("hawkmoth")
     best = judged.best
     assert f"optimum of the box: {best.specific_power:.4g} W/kg, proven bound {best.lower_bound:.4g} W/kg" in told
     model = f"this model {judged.own_specific_power:.4g} W/kg"
@@ -88,8 +87,8 @@ def test_the_note_tells_optimum_bound_cfd_and_model_apart(page: Any) -> None:
 def test_nothing_is_saved_of_the_own_stroke_itself(page: Any) -> None:
     load_own(page, insect="fruitfly")
     shown = page.numbers()
-    assert tiles(shown)["saving against own stroke"] == "–"
-    assert exact(shown)["saving"] is None
+    assert tiles(page)["saving against own stroke"] == "–"
+    assert page.exact(shown)["saving"] is None
     told = remarks(page)
     assert "it does not hover" in told
     assert "saving compares" not in told
@@ -123,8 +122,8 @@ def test_where_nothing_hovers_the_optimum_is_called_most_lift(page: Any) -> None
     answer = page.choose()
     assert answer["load-optimal"]["children"] == "most lift"
     assert {"value": "optimal", "label": "most lift"} in answer["beside"]["options"]
-    assert "of it, which “most lift” loads" in words(answer["note"]["children"])
-    assert tiles(page.numbers())["gap to the optimum"] == "–"
+    assert "of it, which “most lift” loads" in page.words(answer["note"]["children"])
+    assert tiles(page)["gap to the optimum"] == "–"
     assert "most lift" in json.dumps(drawn(page)["figure-forces"]["figure"])
     answer = page.choose(mass=100)
     assert answer["load-optimal"]["children"] == "the optimum"
@@ -132,23 +131,23 @@ def test_where_nothing_hovers_the_optimum_is_called_most_lift(page: Any) -> None
 
 @pytest.mark.parametrize("problem", ["free-frequency", "fixed-frequency", "profile-drag"])
 def test_what_the_learned_stroke_was_trained_for_is_told_where_it_is_another_problem(page: Any, problem: str) -> None:
-    told = words(page.choose(insect="fruitfly", problem=problem)["note"]["children"])
+    told = page.words(page.choose(insect="fruitfly", problem=problem)["note"]["children"])
     assert ("trained in problem A" in told) == (problem != "free-frequency")
 
 
 def test_a_typed_wing_tells_that_its_own_stroke_is_made_up_and_which(page: Any) -> None:
-    told = words(page.choose(insect=OWN_WING)["note"]["children"])
+    told = page.words(page.choose(insect=OWN_WING)["note"]["children"])
     assert "its own stroke is made up: frequency f = 100 Hz, amplitude φmax = 60°" in told
     assert "α_mid = 35°" in told
-    assert "made up" not in words(page.choose(insect="fruitfly")["note"]["children"])
+    assert "made up" not in page.words(page.choose(insect="fruitfly")["note"]["children"])
 
 
 @pytest.mark.parametrize(("field", "value"), [("mass", 80), ("wing_length", 12), ("mean_chord", 3.5), ("r1_hat", 0.5)])
 def test_a_wing_with_one_other_number_is_another_wing(page: Any, field: str, value: float) -> None:
     page.choose(insect=OWN_WING)
-    before = exact(page.numbers(frequency=100.0))
+    before = page.exact(page.numbers(frequency=100.0))
     page.choose(**{field: value})
-    assert exact(page.numbers())["weight_support"] != before["weight_support"]
+    assert page.exact(page.numbers())["weight_support"] != before["weight_support"]
 
 
 @pytest.mark.parametrize(
@@ -162,4 +161,4 @@ def test_sizes_that_do_not_go_together_are_told_in_the_pages_words(
     page: Any, field: str, value: float, wanted: str
 ) -> None:
     answer = page.ask("case.data", insect=OWN_WING, **{field: value})
-    assert words(answer["note"]["children"]).startswith(wanted)
+    assert page.words(answer["note"]["children"]).startswith(wanted)
