@@ -31,7 +31,8 @@ def main(arguments: list[str] | None = None) -> int:
             command = getattr(import_module(COMMANDS.get(name, "agents.commands.train")), f"{name}_command")
             return int(command(rest))
     except ImportError as missing:
-        print(f"train.py: {missing}; install the learners: pip install -e '.[train]'", file=sys.stderr)
+        extra = name if name == "explore" else "train"
+        print(f"train.py: {missing}; install what {name} needs: pip install -e '.[{extra}]'", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("train.py: stopped outside of training; files already written are kept", file=sys.stderr)

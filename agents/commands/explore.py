@@ -1,7 +1,6 @@
 """`python train.py explore`: the explorer on this machine alone."""
 
 import contextlib
-import importlib.util
 import logging
 import os
 import socket
@@ -55,8 +54,6 @@ def explore_command(arguments: list[str]) -> int:
     options = parser().parse_args(arguments)
     try:
         require_count("--port", options.port, low=0, high=HIGHEST_PORT)
-        if importlib.util.find_spec("dash") is None:
-            raise ValueError("the explorer needs Dash; install it: pip install -e '.[explore]'")
         listening = listen(options.port)
     except (ValueError, TypeError, OSError) as mistake:
         print(f"train.py explore: {mistake}", file=sys.stderr)
@@ -105,6 +102,7 @@ def served(insect: str | None, wing: Path | None) -> "Flask":
         wing: a file, or None.
 
     Raises:
+        ImportError: where the extra "explore" is not installed.
         ValueError: for an unknown insect, or a file that does not hold a wing.
         OSError: for a file that cannot be read.
     """

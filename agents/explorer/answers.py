@@ -8,30 +8,34 @@ from typing import Any
 import plotly.graph_objects as go
 from dash import html
 
-from agents.explorer.cases import Case
+from agents.explorer.cases import LEARNED_IN, Case
+from agents.explorer.controls import shown_stroke, stroke_controls
+from agents.explorer.layout import BUTTONS, MOST_LIFT, PROBLEM_LABELS
 from agents.plots.beat import beat
 from agents.plots.cycle import forces, terms, waveforms
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment, rankings
+from flapenv.assessment.validity import ANGLES, CASES
 from flapenv.files import NamedStroke, strokes_to_text
 
 YOURS = "yours"
 """Label of the stroke that the sliders say."""
 SAME_WEIGHT = 1e-3
 """Weight supports that differ by less need no remark [-]."""
-NO_SAVING = 1e-6
-"""A smaller saving is that of the own stroke itself, up to the rounding of the sliders [-]."""
+NONE = "–"
+"""Stands where there is no number."""
 
 
 def numbers(case: Case, stroke: Stroke) -> list[Any]:
     """The numbers of a stroke, each with its full digits in `data-exact`, and all of them as JSON."""
     judged = case.judged(stroke)
+    saving = None if judged.is_own else judged.saving
     tiles = [
         _tile("weight_support", "weight support Λ", f"{judged.weight_support:#.5g}", "", judged.weight_support),
         _tile("specific_power", "power P*", f"{judged.specific_power:#.5g}", "W/kg", judged.specific_power),
         _tile("gap", "gap to the optimum", _percent(judged.gap), "%", judged.gap),
-        _tile("saving", "saving against own stroke", _percent(judged.saving), "%", judged.saving),
+        _tile("saving", "saving against own stroke", _percent(saving), "%", saving),
     ]
     exact = {
         "insect": case.insect.name,
@@ -39,23 +43,34 @@ def numbers(case: Case, stroke: Stroke) -> list[Any]:
         "weight_support": judged.weight_support,
         "specific_power": judged.specific_power,
         "gap": judged.gap,
-        "saving": judged.saving,
+        "saving": saving,
         "stroke": {name: float(getattr(stroke, name)) for name in STROKE_PARAMETERS},
     }
-    return [html.Div(tiles, className="tiles"), html.Div(json.dumps(exact), id="exact", hidden=True)]
+    told = (f"problem {PROBLEM_LABELS[case.explored]}", f"stroke: {_in_words(case, stroke)}")
+    printed = html.Div(
+        [*note(case), *map(html.Div, told)], className="printed"
+    )  # where there are no controls: on paper
+    return [html.Div(tiles, className="tiles"), printed, html.Div(json.dumps(exact), id="exact", hidden=True)]
 
 
 def _tile(name: str, label: str, text: str, unit: str, exact: float | None) -> html.Div:
     """One number."""
     full: dict[str, Any] = {"data-exact": json.dumps(exact)}
     value = html.Span(text, id=f"number-{name}", className="value", **full)
-    return html.Div([html.Span(label, className="label"), value, html.Span(unit, className="unit")], className="tile")
+    parts = [html.Span(label, className="label"), value]
+    return html.Div(parts if text == NONE else [*parts, html.Span(unit, className="unit")], className="tile")
+
+
+def _in_words(case: Case, stroke: Stroke) -> str:
+    """A stroke's six numbers in a line."""
+    shown = zip(stroke_controls(case.insect), shown_stroke(stroke, case.insect), strict=True)
+    return ", ".join(f"{control.short_label} = {control.with_unit(value)}" for control, value in shown)
 
 
 def _percent(share: float | None) -> str:
     """A share in percent, at least four digits."""
     if share is None or not math.isfinite(share):
-        return "none"
+        return NONE
     text = f"{100 * share:#.5g}" if abs(share) >= 0.01 else f"{100 * share:.4f}"
     return "0.0000" if text == "-0.0000" else text
 
@@ -69,12 +84,21 @@ def note(case: Case) -> list[Any]:
         lines.append(f"optimum of the box: {own.best.specific_power:.4g} W/kg{bound}")
     else:
         lines.append(
-            f"no stroke of the box carries the weight: at most {own.best.max_weight_support:.3f} of it; "
-            "“the optimum” loads the stroke that lifts most"
+            f"no stroke of the box carries the weight: at most {own.best.max_weight_support:.3f} of it, "
+            f"which “{labels(case)['optimal']}” loads"
         )
     if own.cfd_power is not None:
         lines.append(f"CFD of its own stroke: {own.cfd_power:.4g} W/kg, this model {own.own_specific_power:.4g} W/kg")
+    if case.is_typed:
+        lines.append(f"its own stroke is made up: {_in_words(case, case.insect.stroke)}")
+    if case.explored != LEARNED_IN.name:
+        lines.append(f"“{BUTTONS['learned']}” is that of a policy that was trained in problem A")
     return [html.Div(line) for line in lines]
+
+
+def labels(case: Case) -> dict[str, str]:
+    """What the strokes of `Case.strokes` are called in figures and beside them."""
+    return {"own": "own", "optimal": "optimal" if case.own.best.feasible else MOST_LIFT, "learned": "learned"}
 
 
 def remarks(case: Case, stroke: Stroke) -> list[Any]:
@@ -85,14 +109,16 @@ def remarks(case: Case, stroke: Stroke) -> list[Any]:
         found.append(f"uncertainty: Λ ± {lift:.0f} %, P* ± {power:.0f} %, {_why(judged)}")
     if judged.weight_support < 1 - SAME_WEIGHT:
         found.append(f"this stroke carries {100 * judged.weight_support:.2f} % of the weight: it does not hover")
-    if abs(judged.weight_support - 1) > SAME_WEIGHT:
+    if abs(judged.weight_support - 1) > SAME_WEIGHT and not judged.is_own:
         found.append("the saving compares both strokes at the frequency with which each carries the weight")
     if judged.beyond_box:
         found.append(f"outside of the problem's box: {'; '.join(one.text for one in judged.beyond_box)}")
-    if judged.flags:
-        found.append(f"outside of what CFD has checked: {'; '.join(judged.flags)}")
-    others = rankings(case.insect, stroke, case.problem.model)
-    if others and abs(judged.saving or 0.0) > NO_SAVING:
+    for basis in (CASES, ANGLES):
+        beyond = [one.text for one in judged.outside if one.basis == basis]
+        if beyond:
+            found.append(f"outside of {basis}: {'; '.join(beyond)}")
+    others = () if judged.is_own else rankings(case.insect, stroke, case.problem.model)
+    if others:
         against = [one.model for one in others if not one.survives]
         kept = len(others) - len(against)
         said = (
@@ -118,7 +144,7 @@ def figures(case: Case, stroke: Stroke, beside: str) -> list[go.Figure]:
         beside: label of the stroke that is drawn with it.
     """
     insect, model = case.insect, case.problem.model
-    strokes = {YOURS: stroke, beside: case.strokes()[beside]}
+    strokes = {YOURS: stroke, labels(case)[beside]: case.strokes()[beside]}
     return [
         beat(insect, strokes, model),
         forces(insect, strokes, model),

@@ -7,17 +7,18 @@ import plotly.graph_objects as go
 from dash import ClientsideFunction, Dash, Input, Output, State, ctx, html, no_update
 from flask import Response
 
-from agents.explorer.answers import figures, file_name, file_text, note, numbers, remarks
+from agents.explorer.answers import figures, file_name, file_text, labels, note, numbers, remarks
 from agents.explorer.cases import Cases
 from agents.explorer.controls import OWN_WING, WING_CONTROLS, read_stroke, shown_stroke, stroke_controls
 from agents.explorer.guard import guard
-from agents.explorer.layout import BUTTONS, FIGURES, PAGE, page
+from agents.explorer.layout import BUTTONS, FIGURES, MOST_LIFT, PAGE, field_of, page
 from agents.plots.beat import SCRIPT
 from flapenv.aero.checks import require_name
 from flapenv.files import WingFile
 
 MISTAKES = (ValueError, TypeError, ArithmeticError, OSError)
 """What is told on the page in one line."""
+NO_NUMBERS = "no numbers: what is typed for the wing is not allowed"
 
 
 def make_app(extra: WingFile | None = None, *, first: str | None = None) -> Dash:
@@ -63,6 +64,8 @@ def _case_callbacks(app: Dash, cases: Cases) -> None:
         output=[
             Output("case", "data"),
             Output("note", "children"),
+            Output("load-optimal", "children"),
+            Output("beside", "options"),
             *(Output(name, prop) for name in names for prop in ("min", "max", "step", "value")),
         ],
         inputs={
@@ -76,7 +79,7 @@ def _case_callbacks(app: Dash, cases: Cases) -> None:
         try:
             key, case = cases.solve(name, own, problem)
         except MISTAKES as mistake:
-            return [None, alert(mistake), *[no_update] * (4 * len(names))]
+            return [None, alert(mistake), *[no_update] * (2 + 4 * len(names))]
         insect = case.insect
         try:
             stroke = read_stroke(moved, insect) if ctx.triggered_id != "insect" else insect.stroke
@@ -84,7 +87,9 @@ def _case_callbacks(app: Dash, cases: Cases) -> None:
             stroke = insect.stroke
         rows = zip(stroke_controls(insect), shown_stroke(stroke, insect), strict=True)
         sliders = [part for one, value in rows for part in (one.low, one.high, one.step, value)]
-        return [key, note(case), *sliders]
+        button = BUTTONS["optimal"] if case.own.best.feasible else MOST_LIFT
+        beside = [{"value": value, "label": label} for value, label in labels(case).items()]
+        return [key, note(case), button, beside, *sliders]
 
     @app.callback(
         output=[Output(name, "value", allow_duplicate=True) for name in names],
@@ -112,13 +117,25 @@ def _stroke_callbacks(app: Dash, cases: Cases) -> None:
     )
     def show_numbers(key: Any, moved: Any) -> Any:
         if key is None:  # the note says what is wrong
-            return None
+            return NO_NUMBERS
         try:
             case = cases.known(key)
             return numbers(case, read_stroke(moved, case.insect))
         except MISTAKES as mistake:
             return alert(mistake)
 
+    for name in names:
+        app.clientside_callback(
+            ClientsideFunction("explorer", "show"),
+            Output(field_of(name), "value"),
+            Input(name, "value"),
+            State(name, "id"),
+        )
+        app.clientside_callback(
+            ClientsideFunction("explorer", "type"),
+            Input(field_of(name), "value"),
+            *(State(name, part) for part in ("id", "value", "min", "max")),
+        )
     app.clientside_callback(
         ClientsideFunction("explorer", "calm"),
         Output("calm", "data"),

@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import threading
+import warnings
 from collections import OrderedDict
 from collections.abc import Mapping
 from functools import cached_property
@@ -35,14 +36,19 @@ KEPT = 64
 class Case:
     """An insect in a problem with its optimum, beside which strokes are judged in a moment."""
 
-    def __init__(self, insect: Insect, problem: HoverProblem) -> None:
+    def __init__(self, insect: Insect, problem: HoverProblem, *, is_typed: bool = False) -> None:
         """Solve the optimum.
+
+        Args:
+            insect: the insect.
+            problem: whose optimum, box and model count.
+            is_typed: whether the wing was typed, so that its own stroke is made up.
 
         Raises:
             ValueError: for a wing that the model has no answer for.
             ArithmeticError: where the optimum cannot be confirmed.
         """
-        self.insect, self.problem = insect, problem
+        self.insect, self.problem, self.is_typed = insect, problem, is_typed
         self.own = assess(insect, problem=problem)
 
     def judged(self, stroke: Stroke) -> StrokeAssessment:
@@ -61,6 +67,11 @@ class Case:
             rankings=(),
         )
 
+    @property
+    def explored(self) -> str:
+        """Which of `EXPLORED` the problem is, within limits or not."""
+        return next(name for name in EXPLORED if str(self.problem.name).startswith(name))
+
     def strokes(self) -> dict[str, Stroke]:
         """What the buttons load, by label."""
         return {"own": self.insect.stroke, "optimal": self.own.best.stroke, "learned": self.learned}
@@ -69,7 +80,9 @@ class Case:
     def learned(self) -> Stroke:
         """The stroke of the shipped policy that knows the insect, or any wing."""
         actor, _ = load_policy(POLICY if self.insect.name in INSECTS else WING_POLICY)
-        info = Comparison([self.insect], LEARNED_IN).beat(actor)
+        with warnings.catch_warnings():  # of a wing that cannot hover, which the page says itself
+            warnings.simplefilter("ignore", UserWarning)
+            info = Comparison([self.insect], LEARNED_IN).beat(actor)
         return Stroke(**{name: float(info[f"stroke/{name}"][0]) for name in STROKE_PARAMETERS})
 
 
@@ -119,7 +132,7 @@ class Cases:
             case = self._solved.get(key)
         if case is None:
             with self.one_at_a_time:
-                case = Case(insect, chosen)
+                case = Case(insect, chosen, is_typed=name == OWN_WING)
         with self._lock:
             self._solved[key] = case
             self._solved.move_to_end(key)

@@ -3,19 +3,20 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from flapenv.aero.checks import record, require_name, require_scalar
+from flapenv.aero.checks import record, require_name, shown
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
-from flapenv.files.plausible import CENTRES, require_insect
+from flapenv.files.plausible import CENTRES, LOADINGS, SLENDERNESS, require_insect
 from flapenv.insects import INSECTS, Insect
+from flapenv.model import HoverModel
 
 OWN_WING = "your own wing"
 """Entry of the list of insects under which one types one's own."""
 LONGEST_NAME = 60
 ROUNDING = 1e-9
 """Relative, of a bound that went through degrees and back."""
-SHOWN_DECIMALS = 7
-"""Of a stroke that is loaded: more than one reads, fewer than make 90° look like 89.99999999999997°."""
+SHOWN_DECIMALS = 6
+"""Of a stroke that is loaded and counts: so few that a field shows all, so many that the optimum's gap is still 0."""
 
 
 @record
@@ -23,8 +24,8 @@ class Control:
     """One number that the page asks for.
 
     Attributes:
-        name: as errors and the page's elements call it.
-        label: as one reads it.
+        name: as the page's elements call it.
+        label: as one reads it, a remark behind its first comma.
         unit: shown behind the label, empty for a ratio.
         low: smallest value allowed [unit].
         high: largest value allowed [unit].
@@ -47,11 +48,25 @@ class Control:
             TypeError: for anything but a number.
             ValueError: for NaN, inf or a number out of range.
         """
+        allowed = f"allowed: {self.with_unit(self.low)} to {self.with_unit(self.high)}"
         if value is None:  # what a field sends that is empty, or beyond its own bounds
-            raise ValueError(f"{self.name} is missing; allowed: {self.low:g} to {self.high:g} {self.unit}".rstrip())
+            raise ValueError(f"{self.short_label} is missing; {allowed}")
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise TypeError(f"{self.short_label} = {shown(value)} is not a number; {allowed}")
         low, high = (end + side * ROUNDING * abs(end) for end, side in ((self.low, -1), (self.high, 1)))
-        number = require_scalar(self.name, value, low, high, unit=self.unit)
-        return min(max(number, self.low), self.high)
+        if not low <= value <= high:
+            raise ValueError(f"{self.short_label} = {self.with_unit(value)} is not allowed; {allowed}")
+        return float(min(max(value, self.low), self.high))
+
+    @property
+    def short_label(self) -> str:
+        """The label without its remark, as errors and print call the number."""
+        return self.label.split(",")[0]
+
+    def with_unit(self, value: float) -> str:
+        """A value as one reads it, "254 Hz", "89°"."""
+        text = f"{value:.6g}" if isinstance(value, float) else shown(value)
+        return f"{text}{self.unit}" if self.unit in ("", "°") else f"{text} {self.unit}"
 
 
 WING_CONTROLS: tuple[Control, ...] = (
@@ -85,7 +100,7 @@ def stroke_controls(insect: Insect) -> tuple[Control, ...]:
     own = float(insect.stroke.frequency)
     step = 10.0 ** (math.floor(math.log10(own)) - 2)
     return (
-        Control(name="frequency", label="frequency f", unit="Hz", low=0.3 * own, high=2 * own, step=step),
+        Control(name="frequency", label="frequency f", unit="Hz", low=round(0.3 * own, 6), high=2 * own, step=step),
         Control(name="flap_amplitude", label="amplitude φmax", unit="°", low=10, high=90, step=0.5),
         Control(name="flap_shape", label="Cφ, 0 sinusoid, 1 triangle", unit="", low=0, high=0.999, step=0.001),
         Control(name="pitch_shape", label="Cθ, 0 sinusoid, large square", unit="", low=0, high=100, step=0.1),
@@ -158,8 +173,23 @@ def read_insect(name: object, own: object, insects: Mapping[str, Insect]) -> Ins
         wing=Wing(length=number["wing_length"] * 1e-3, mean_chord=number["mean_chord"] * 1e-3, r1_hat=number["r1_hat"]),
         stroke=Stroke(frequency=number["reference_frequency"], **REFERENCE_ANGLES),
     )
+    _require_together(insect)
     require_insect(insect)
     return insect
+
+
+def _require_together(insect: Insect) -> None:
+    """Refuse sizes and masses that do not go together, in the page's words and before `require_insect` does in SI's."""
+    ratio, (low, high) = float(insect.wing.aspect_ratio), SLENDERNESS
+    if not low <= ratio <= high:
+        raise ValueError(f"wing length R over mean chord c̄ = {ratio:.4g} is not allowed; allowed: {low:g} to {high:g}")
+    area = 2 * float(insect.wing.length) * float(insect.wing.mean_chord)
+    loading, (low, high) = float(insect.mass) * HoverModel().gravity / area, LOADINGS
+    if not low <= loading <= high:
+        raise ValueError(
+            f"mass of the body = {1e6 * insect.mass:.6g} mg on two wings of {5e5 * area:.4g} mm² each is a wing "
+            f"loading of {loading:.3g} N/m²; allowed: {low:g} to {high:g} N/m²"
+        )
 
 
 def _read_name(name: object) -> str:

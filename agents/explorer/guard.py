@@ -7,6 +7,8 @@ from werkzeug.exceptions import HTTPException
 
 LARGEST_REQUEST = 2**17
 """What the page sends is small [bytes]."""
+ANYTHING_ELSE = "/<path:path>"
+"""Dash's rule for paths that nothing answers, under each of which it would serve the page."""
 FRIENDLY_SITES = (None, "same-origin", "none")
 """Values of Sec-Fetch-Site that come from the page itself, from an address typed in, or from an older browser."""
 
@@ -39,7 +41,9 @@ def guard(server: Flask, script_hashes: Sequence[str]) -> None:
     @server.before_request
     def refuse() -> Response | None:
         reason = foreign(request)
-        return None if reason is None else _said(f"{reason} is not allowed here", 403)
+        if reason is not None:
+            return _said(f"{reason} is not allowed here", 403)
+        return _said("Not Found", 404) if str(request.url_rule) == ANYTHING_ELSE else None
 
     @server.after_request
     def sealed(response: Response) -> Response:

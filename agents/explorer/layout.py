@@ -18,9 +18,14 @@ PROBLEM_LABELS = {
 """What `EXPLORED` are called on the page."""
 BUTTONS = {"own": "its own stroke", "optimal": "the optimum", "learned": "the learned stroke"}
 """Labels of `Case.strokes` as the buttons say them."""
+MOST_LIFT = "most lift"
+"""What stands for the optimum where no stroke of the box carries the weight."""
 PLACEHOLDER = "450px"
 """Height of a figure before it is there."""
 CONFIG: Any = config()  # Dash types every key of it
+LEFT_OVER = "what follows is of the last stroke that was allowed, not of what is typed now"
+NO_FILE = "there is nothing to download: what is typed is not allowed"
+"""Shown while an alert stands on the page."""
 HINTS = {
     "own": "as it was measured; of a wing that you type, a plain one",
     "optimal": "of the problem's box",
@@ -55,7 +60,7 @@ def page(insects: Mapping[str, Insect], name: str | None = None) -> html.Div:
             html.H1("flapenv: move a wingbeat, see what it costs"),
             html.Div(id="numbers", role="status"),
             html.Div([_case(list(insects), first.name), _stroke(first)], id="controls"),
-            html.Div([html.Div(id="remarks"), *map(_figure, FIGURES)], id="figures"),
+            html.Div([_wrong(LEFT_OVER), html.Div(id="remarks"), *map(_figure, FIGURES)], id="figures"),
             dcc.Store(id="case"),
             dcc.Store(id="calm"),
             dcc.Download(id="download"),
@@ -98,11 +103,12 @@ def _stroke(first: Insect) -> html.Div:
             html.Div(
                 [
                     html.Span("drawn beside it: "),
-                    dcc.RadioItems(id="beside", options=["own", "optimal", "learned"], value="optimal", inline=True),
+                    dcc.RadioItems(id="beside", options=list(BUTTONS), value="optimal", inline=True),
                 ],
                 className="beside",
             ),
             html.Button("download JSON", id="export", type="button"),
+            _wrong(NO_FILE),
         ],
         className="panel",
     )
@@ -118,8 +124,20 @@ def _slider(control: Control, value: float) -> html.Div:
         value=value,
         marks=None,
         updatemode="drag",
+        allow_direct_input=False,  # its own field shows what it does not use
     )
-    return html.Div([html.Div(_with_unit(control), className="label"), slider], className="slider")
+    field = dcc.Input(id=field_of(control.name), type="number", step="any", value=value, debounce=True)
+    return html.Div([html.Div(_with_unit(control), className="label"), slider, field], className="slider")
+
+
+def field_of(name: str) -> str:
+    """The id of the field beside a slider; explorer.js keeps the two alike."""
+    return f"{name}-field"
+
+
+def _wrong(text: str) -> html.Div:
+    """What is said while an alert stands."""
+    return html.Div(text, className="when-wrong")
 
 
 def _field(control: Control) -> dcc.Input:

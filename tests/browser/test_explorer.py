@@ -1,8 +1,10 @@
 """The explorer in a browser: its numbers are `flapenv.evaluate`'s within a tenth of a second, and the wing beats."""
 
 import contextlib
+import dataclasses
 import json
 import logging
+import math
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -153,27 +155,89 @@ def test_a_dragged_slider_takes_the_numbers_along(opened: Page) -> None:
     assert median(waits) < AT_ONCE
     shown = exact(opened)
     agrees_with_evaluate(shown)
-    field = opened.locator("#frequency input").input_value()
+    field = opened.locator("#frequency-field").input_value()
     assert shown["stroke"]["frequency"] == pytest.approx(float(field))
     assert shown["stroke"]["frequency"] > flapenv.load_insect("fruitfly").stroke.frequency
 
 
-def test_a_typed_number_counts_and_one_out_of_range_does_not(opened: Page) -> None:
-    field = opened.locator("#alpha_mid input")
+def test_field_thumb_and_numbers_agree_whatever_is_typed(opened: Page) -> None:
+    field, thumb = opened.locator("#alpha_mid-field"), opened.locator("#alpha_mid [role=slider]")
+    for typed, key, wanted in (
+        ("33.3", "Enter", "33.3"),
+        ("900", "Tab", "89"),
+        ("900", "Enter", "89"),  # once more, when the slider stands there already
+        ("", "Enter", "89"),
+        ("-5", "Tab", "1"),
+        ("40.123456", "Enter", "40.123456"),
+    ):
+        field.fill(typed)
+        field.press(key)
+        expect(thumb).to_have_attribute("aria-valuenow", wanted)
+        expect(field).to_have_value(wanted)
+        opened.wait_for_timeout(300)
+        shown = exact(opened)
+        assert 90 - math.degrees(shown["stroke"]["pitch_amplitude"]) == pytest.approx(float(wanted))
+        agrees_with_evaluate(shown)
 
-    def type_angle() -> None:
-        field.fill("33.3")
+
+def test_a_field_shows_all_digits_of_what_is_used(opened: Page) -> None:
+    stroke = changes(opened, lambda: opened.click("#load-learned"))["stroke"]
+    fields = opened.locator(".slider input")
+    assert fields.count() == 6
+    assert float(opened.locator("#frequency-field").input_value()) == stroke["frequency"]
+    angle = math.radians(float(opened.locator("#flap_amplitude-field").input_value()))
+    assert angle == stroke["flap_amplitude"]
+    assert fields.evaluate_all("all => all.every(one => one.scrollWidth <= one.clientWidth)")
+
+
+def test_the_figures_follow_more_than_the_first_move(opened: Page) -> None:
+    drawn = opened.locator("#figure-forces .legendtext").first
+    for frequency in (200, 220, 300):
+        field = opened.locator("#frequency-field")
+        field.fill(str(frequency))
         field.press("Enter")
+        stroke = dataclasses.replace(flapenv.load_insect("fruitfly").stroke, frequency=float(frequency))
+        lift = flapenv.evaluate("fruitfly", stroke).weight_support
+        expect(drawn).to_contain_text(f"yours: mean lift {lift:.3f} weights")
 
-    shown = changes(opened, type_angle)
-    agrees_with_evaluate(shown)
-    field.fill("900")
-    field.press("Enter")
-    opened.wait_for_timeout(500)
-    if opened.locator("#exact").count():  # the field took the nearest number it allows
-        agrees_with_evaluate(exact(opened))
-    else:
-        expect(opened.locator("#numbers [role=alert]")).to_contain_text("alpha_mid")
+
+def test_what_is_left_over_is_dimmed_while_a_wing_is_not_allowed(opened: Page) -> None:
+    left = opened.get_by_text("what follows is of the last stroke that was allowed")
+    none = opened.get_by_text("there is nothing to download")
+    opened.click("#insect")
+    opened.get_by_text("your own wing").last.click()
+    expect(opened.locator("#note")).to_contain_text("its own stroke is made up")
+    opened.wait_for_selector("#number-gap")
+    for one in (left, none):
+        expect(one).not_to_be_visible()
+    opened.fill("#mean_chord", "0.02")
+    expect(opened.locator("#note [role=alert]")).to_contain_text("mean chord c̄")
+    for one in (left, none):
+        expect(one).to_be_visible()
+    expect(opened.locator("#numbers")).to_contain_text("no numbers")
+    for faint in ("#remarks", "#figures .figure >> nth=0"):
+        expect(opened.locator(faint)).to_have_css("opacity", "0.25")
+    opened.fill("#mean_chord", "4")
+    opened.wait_for_selector("#number-gap")
+    expect(left).not_to_be_visible()
+    expect(opened.locator("#remarks")).to_have_css("opacity", "1")
+
+
+def test_paper_tells_insect_problem_and_stroke_with_figures_of_its_width(opened: Page) -> None:
+    printed = opened.locator(".printed")
+    expect(printed).not_to_be_visible()
+    before = opened.evaluate("document.querySelector('.main-svg').clientWidth")
+    opened.emulate_media(media="print")
+    opened.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    expect(printed).to_be_visible()
+    for told in ("fruitfly: 0.72 mg", "problem A", "frequency f = 254 Hz", "α_mid = 46°", "phase δ = 90°"):
+        expect(printed).to_contain_text(told)
+    drawn = opened.locator(".figure .js-plotly-plot > .plot-container .main-svg")
+    expect(drawn.first).to_have_css("width", "680px")
+    assert set(drawn.evaluate_all("all => all.map(one => one.clientWidth)")) == {680}
+    opened.emulate_media(media="screen")
+    opened.evaluate("window.dispatchEvent(new Event('afterprint'))")
+    expect(drawn.first).to_have_css("width", f"{before}px")
 
 
 def test_buttons_load_the_optimal_the_learned_and_the_own_stroke(opened: Page) -> None:

@@ -1,8 +1,10 @@
-// Lets the figures follow the sliders at the pace they can be drawn in, so that the numbers never wait for them, and
-// gives the controls their names.
+// Keeps each slider and its field alike, lets the figures follow the sliders at the pace they can be drawn in, so that
+// the numbers never wait for them, makes the figures as wide as the paper, and gives the controls their names.
 "use strict";
 (() => {
   const QUIET = 60, LONGEST = 300; // milliseconds without a move, and at most between two drawings
+  const PRINTED = 680; // px, width of an A4 page within its margins
+  const written = {}; // by slider: what its field was last made to show
   let timer = null, since = null;
   function nameControls() { // for those who hear the page: Dash's sliders and its list know no labels
     const rows = [...document.querySelectorAll(".slider")];
@@ -17,7 +19,18 @@
   const waiting = new MutationObserver(nameControls);
   waiting.observe(document.documentElement, { childList: true, subtree: true });
   window.dash_clientside = window.dash_clientside || {};
+  const set = (id, value) => window.dash_clientside.set_props(id, { value });
   window.dash_clientside.explorer = {
+    show(value, id) { // the slider has moved
+      written[id] = value;
+      return value;
+    },
+    type(typed, id, used, low, high) { // a number beyond the slider's ends becomes the end, none leaves what was used
+      if (typed === written[id]) return;
+      written[id] = Number.isFinite(typed) ? Math.min(Math.max(typed, low), high) : used;
+      set(`${id}-field`, written[id]);
+      if (written[id] !== used) set(id, written[id]);
+    },
     calm(...values) {
       const now = performance.now();
       if (since === null) since = now;
@@ -29,4 +42,11 @@
       return window.dash_clientside.no_update;
     },
   };
+  const figures = () => document.querySelectorAll(".js-plotly-plot");
+  window.addEventListener("beforeprint", () => {
+    figures().forEach((figure) => Plotly.relayout(figure, { width: PRINTED }));
+  });
+  window.addEventListener("afterprint", () => {
+    figures().forEach((figure) => Plotly.relayout(figure, { width: null, autosize: true }));
+  });
 })();

@@ -1,8 +1,10 @@
 """`train.py explore`: one line for what is wrong, the loopback alone, and a quiet end."""
 
 import contextlib
-import importlib.util
 import socket
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -37,11 +39,17 @@ def test_a_port_that_is_taken_is_told_in_one_line(capsys: pytest.CaptureFixture[
     assert told.count("\n") == 1
 
 
-def test_without_dash_the_mend_is_told(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    found = importlib.util.find_spec
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "dash" else found(name))
-    assert train.main(["explore", "--no-browser"]) == 2
-    assert "pip install -e '.[explore]'" in capsys.readouterr().err
+@pytest.mark.parametrize("missing", ["dash", "flask", "plotly", "jinja2"])
+def test_what_is_missing_is_told_with_its_mend(missing: str) -> None:
+    """In a process of its own, which has imported nothing yet."""
+    asked = f"import sys; sys.modules[{missing!r}] = None; import train; sys.exit(train.main(sys.argv[1:]))"
+    command = [sys.executable, "-c", asked, "explore", "--no-browser", "--port", "0"]
+    root = Path(train.__file__).parent
+    ended = subprocess.run(command, check=False, cwd=root, capture_output=True, text=True, timeout=60)
+    assert ended.returncode == 2
+    assert missing in ended.stderr
+    assert "pip install -e '.[explore]'" in ended.stderr
+    assert ended.stderr.count("\n") == 1
 
 
 def test_nothing_but_the_loopback_is_listened_on() -> None:

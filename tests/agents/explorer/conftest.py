@@ -70,6 +70,20 @@ class Page:
         """What the page shows of a stroke."""
         return self.ask("numbers.children", changed="frequency.value", **values)["numbers"]["children"]
 
+    @staticmethod
+    def exact(children: Any) -> dict[str, Any]:
+        """The numbers in full, of what `numbers` gave."""
+        found = next(one["props"]["children"] for one in children if one["props"].get("id") == "exact")
+        numbers: dict[str, Any] = json.loads(found)
+        return numbers
+
+    @classmethod
+    def words(cls, component: Any) -> str:
+        """All text of a component."""
+        if isinstance(component, list):
+            return " ".join(map(cls.words, component))
+        return cls.words(component["props"].get("children")) if isinstance(component, dict) else str(component or "")
+
 
 @pytest.fixture(scope="session")
 def app() -> Dash:

@@ -6,6 +6,17 @@ import pytest
 
 FOREIGN_HOSTS = ("evil.example", "evil.example:8050", "127.0.0.1:8051", "127.0.0.1", "192.168.0.2:8050", "")
 UNKNOWN = '{"output": "nothing.children", "inputs": []}'
+POLICY = (
+    "default-src 'none'; script-src 'self' {}; style-src 'self' 'unsafe-inline'; img-src 'self' data:; "
+    "font-src 'self' data:; connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+SEALS = {
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
 FOREIGN_BODIES = ("", "{", "[]", "1", "null", "{}", UNKNOWN, '{"output": 5}', "[" * 5000)
 
 
@@ -62,14 +73,20 @@ def test_inputs_that_are_missing_are_refused_in_one_line(page: Any) -> None:
 
 
 def test_every_answer_keeps_the_page_to_itself(page: Any, base: str) -> None:
+    scripts = " ".join(page.app.csp_hashes())
+    assert "sha256-" in scripts
+    assert "unsafe" not in scripts
     for path in ("/", "/_dash-layout", "/beat.js", "/nowhere/at/all"):
         headers = page.client.get(path, base_url=base).headers
-        policy = dict(part.split(" ", 1) for part in headers["Content-Security-Policy"].split("; "))
-        assert policy["default-src"] == "'none'"
-        assert "unsafe" not in policy["script-src"]
-        assert policy["frame-ancestors"] == "'none'"
-        assert headers["X-Content-Type-Options"] == "nosniff"
-        assert headers["Referrer-Policy"] == "no-referrer"
+        assert headers["Content-Security-Policy"] == POLICY.format(scripts)
+        assert {name: headers[name] for name in SEALS} == SEALS
+
+
+@pytest.mark.parametrize("path", ["/nope", "/nowhere/at/all", "/_dash-nothing", "/assets/nothing.js"])
+def test_a_path_that_nothing_answers_is_not_found(page: Any, base: str, path: str) -> None:
+    answer = page.client.get(path, base_url=base)
+    assert answer.status_code == 404
+    assert answer.text == "Not Found\n"
 
 
 def test_the_page_names_no_other_server(page: Any, base: str) -> None:
