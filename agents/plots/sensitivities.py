@@ -87,8 +87,6 @@ def sensitivities(optima: Sequence[Optimum]) -> go.Figure:
             "color": GREY,
             "thickness": 1.5,
         },
-        text=[f"{value:.2f}" for value in middle],
-        textposition="none",
         hovertemplate="%{y}: %{x:.3f} % of the power<extra></extra>",
     )
     styled(figure, HEIGHT)
