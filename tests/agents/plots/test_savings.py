@@ -22,6 +22,9 @@ def test_bars_and_whiskers_are_the_assessments_in_percent() -> None:
         assert model == pytest.approx(100 * (1 - one.specific_power / one.own_hovering_power), rel=1e-6)
         assert raw == pytest.approx(100 * (1 - one.specific_power / one.own_specific_power), rel=1e-6)
     assert (by_cfd.name, by_model.name) == (BY_CFD, BY_MODEL)
+    assert (BY_CFD, BY_MODEL) == ("of CFD's power", "in this model, both carrying the weight")
+    assert as_is.name == "in this model, both as they are"
+    assert by_model.marker.color != by_model.error_x.color
     assert tuple(by_cfd.y) == INSECTS
     assert by_cfd.error_x.array is None
 
