@@ -24,7 +24,7 @@ STEPS_PER_SHARPNESS, MOST_STEPS = 144, 14_400
 """A turn of the wing takes the 1/Cθ-th part of a radian of the phase, and 23 instants."""
 BINS = 120
 """Parts of the cycle of which a curve that is drawn keeps the least and the largest value."""
-USUAL = (2.0, 98.0)
+USUAL = (15.0, 85.0)
 """Of a curve's values over time, what an axis must have room for [%]: what is beyond is a spike."""
 SPIKE = 1.5
 """How much longer an axis would have to be before spikes are cut off."""
@@ -109,7 +109,7 @@ def terms(insect: Insect, stroke: Stroke, model: HoverModel) -> go.Figure:
     titles = {title: LIFT if parts is lift else POWER for title, parts in panels.items()}
     figure = _stacked(titles, curves, legend_rows=3)
     for row, parts in enumerate(summed):
-        _cut_spikes(figure, row, list(parts.values()), counted=next(iter(parts.values())))
+        _cut_spikes(figure, row, list(parts.values()), counted=(lift if row == 0 else power)["translational"])
     return figure
 
 
