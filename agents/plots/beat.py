@@ -22,7 +22,7 @@ SCRIPT = Path(__file__).with_name("beat.js")
 """What plays the figure wherever plotly.js and this script are on the page."""
 SECONDS = 2.4
 """That one wingbeat takes on the screen."""
-ROW, GAP, TOP, FOOT = 205, 34, 46, 56
+ROW, GAP, TOP, FOOT = 165, 34, 46, 56
 """Heights of a stroke's row, of its title, of what is above the first and below the last [px]."""
 ABOVE, BELOW, BESIDE = 0.2, 1.35, 0.7
 """Room above the highest arrow, and below and beside the path of the section for the chord [mean chords]."""
@@ -115,7 +115,7 @@ def _still(one: DrawnBeat, unit: float) -> list[dict[str, Any]]:
             "mode": "lines",
             "line": {"color": RULE, "width": 1, "dash": "dot"},
         },
-        {"x": x, "y": y, "mode": "lines", "line": {"color": TRAIL, "width": 3}, "connectgaps": False},
+        {"x": x, "y": y, "mode": "lines", "line": {"color": TRAIL, "width": 2}, "connectgaps": False},
         {
             "x": rounded([-reach - BESIDE / 2] * 2),
             "y": rounded([0.3, 0.3 + unit]),

@@ -100,10 +100,10 @@ def terms(insect: Insect, stroke: Stroke, model: HoverModel) -> go.Figure:
     told = {name: name.replace("-", " ") for name in known}
     lift = {told[name]: beat.terms[name].force[:, 2] / (insect.mass * model.gravity) for name in air}
     power = {told[name]: beat.terms[name].power.sum(axis=0) / insect.mass for name in known}
-    panels = {"lift by term": lift, "aerodynamic power by term": {told[name]: power[told[name]] for name in air}}
+    panels = {"lift by term": lift, "power by term": {told[name]: power[told[name]] for name in air}}
     if "inertia" in known:
         of_air = np.sum([power[told[name]] for name in air], axis=0)
-        panels["with the wings' inertia"] = {"aerodynamic": of_air, "inertia": power["inertia"]}
+        panels["with inertia"] = {"aerodynamic": of_air, "inertia": power["inertia"]}
     summed = [{**parts, "sum": np.sum(list(parts.values()), axis=0)} for parts in panels.values()]
     curves = _curves(summed, TERM_STYLES, names={name: name for name in TERM_STYLES})
     titles = {title: LIFT if parts is lift else POWER for title, parts in panels.items()}
@@ -137,7 +137,7 @@ def _cut_spikes(figure: go.Figure, row: int, curves: Sequence[np.ndarray], count
         return
     room = 0.08 * (high - low)
     figure.layout["yaxis" if row == 0 else f"yaxis{row + 1}"].range = rounded([low - room, high + room])
-    figure.layout.annotations[row].text += f"; spikes reach {least:.3g} and {most:.3g}"
+    figure.layout.annotations[row].text += f"; peaks {rounded(least):,g}, {rounded(most):,g}"
 
 
 def _stacked(panels: Mapping[str, str], curves: Sequence[dict[str, Any]], legend_rows: int) -> go.Figure:

@@ -17,6 +17,8 @@ HEIGHT = 520
 """Of the figure [px]."""
 AGREEMENT = 0.01
 """Of fronts, and of points with the optimum, that are told as one [-]."""
+NAMES_ROOM = 0.3
+"""Right of the curves, for their names [weights]."""
 COUNTS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight"}
 
 
@@ -58,7 +60,7 @@ def front(assessments: Sequence[StrokeAssessment], fronts: Sequence[TradeOff], c
     figure.update_layout(
         xaxis={
             "title": {"text": "weight support Λ"},
-            "range": [min(0.75, *carried) - 0.05, max(1.5, *carried) + 0.05],
+            "range": [min(0.75, *carried) - 0.05, max(*fronts[0].values, *carried) + NAMES_ROOM],
         },
         yaxis={"title": {"text": "power over the least for the full weight"}, "range": [0, 1.1 * highest]},
     )

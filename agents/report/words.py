@@ -85,7 +85,7 @@ def _savings(strokes: Sequence[StrokeAssessment]) -> list[str]:
     by_cfd = {one.insect.name: saving for one in others if (saving := one.saving_to_cfd) is not None}
     told = [f"{said}."]
     if by_cfd:
-        told.append(f"It {saved(by_cfd)} the power that CFD found for {own}.")
+        told.append(f"That {saved(by_cfd)} the power that CFD found for {own}.")
     return [*told, *_as_they_are([one for one in others if not is_light(one)])]
 
 
@@ -100,7 +100,7 @@ def _as_they_are(strokes: Sequence[StrokeAssessment]) -> list[str]:
             carried = span([one.own_weight_support for one in some], 2)
             own = f"strokes {words}, which carry" if len(some) > 1 else f"stroke {words}, which carries"
             compared = saved({one.insect.name: one.saving_as_published for one in some})
-            told.append(f"It {compared} the power of the {own} {carried} of the weight in this model.")
+            told.append(f"That {compared} the power of the {own} {carried} of the weight in this model.")
     return told
 
 
