@@ -30,7 +30,7 @@ SPIKE = 1.5
 """How much longer an axis would have to be before spikes are cut off."""
 PANEL, GAP, FOOT = 190, 56, 56
 """Heights of a panel, of what is between two, and of what is below the last [px]."""
-LEGEND_ROW, TITLE = 22, 30
+LEGEND_ROW, TITLE = 22, 38
 """Heights of a row of the legend, and of a panel's title [px]."""
 LIFT, POWER = "lift / weight [-]", "power / mass [W/kg]"
 PURPLE = "#CC79A7"
