@@ -86,6 +86,12 @@ def test_names_that_somebody_chose_stay_text(content_of: Make, page_of: Callable
     assert page.data("savings-data")["data"][0]["y"] == ["&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;"]
 
 
+def test_a_name_that_is_written_from_right_to_left_turns_nothing_else_around(content_of: Make) -> None:
+    html = report_page(content_of("hawkmoth", renamed="\u05e2\u05e9", title="\u05e2\u05e9"))
+    for element in ("<h1><bdi>", '<th scope="row"><bdi>', '<bdi class="name">'):
+        assert f"{element}\u05e2\u05e9</bdi>" in html
+
+
 def test_json_within_a_script_element_cannot_close_it() -> None:
     assert script_data('"</script>&<!--"') == r'"\u003c/script\u003e\u0026\u003c!--"'
 
