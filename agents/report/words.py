@@ -93,12 +93,12 @@ def _as_they_are(strokes: Sequence[StrokeAssessment]) -> list[str]:
     """What strokes that carry the weight save of the own ones, whatever those carry."""
     told = []
     for words, some in (
-        ("as published", [one for one in strokes if one.insect.name in INSECTS]),
-        ("of reference", [one for one in strokes if one.insect.name not in INSECTS]),
+        ("strokes as published", [one for one in strokes if one.insect.name in INSECTS]),
+        ("reference strokes", [one for one in strokes if one.insect.name not in INSECTS]),
     ):
         if some:
             carried = span([one.own_weight_support for one in some], 2)
-            own = f"strokes {words}, which carry" if len(some) > 1 else f"stroke {words}, which carries"
+            own = f"{words}, which carry" if len(some) > 1 else f"{words.replace('strokes', 'stroke')}, which carries"
             compared = saved({one.insect.name: one.saving_as_published for one in some})
             told.append(f"That {compared} the power of the {own} {carried} of the weight in this model.")
     return told
@@ -112,12 +112,12 @@ def saved(savings: Mapping[str, float]) -> str:
     """
     gains = [100 * saving for saving in savings.values() if saving >= 0]
     losses = {name: -100 * saving for name, saving in savings.items() if saving < 0}
-    more = f"needs {small_span(list(losses.values()))} % more than" if losses else ""
+    more = f"{small_span(list(losses.values()))} %" if losses else ""
     if not losses:
         return f"saves {span(gains, 0)} % of"
     if not gains:
-        return more
-    return f"{more} (for {', '.join(losses)}) and else saves {span(gains, 0)} % of"
+        return f"needs {more} more than"
+    return f"needs more for {', '.join(losses)} ({more}) and else saves {span(gains, 0)} % of"
 
 
 def _distance(content: ReportContent, mean: float, worst: float) -> str:

@@ -47,7 +47,7 @@ def test_a_stroke_that_does_not_carry_the_weight_saves_nothing_unqualified(conte
 def test_what_needs_more_power_is_not_said_to_save_less_than_nothing(content_of: Make) -> None:
     assert saved({"a": -0.2}) == "needs 20 % more than"
     assert saved({"a": 0.1, "b": 0.3}) == "saves 10 to 30 % of"
-    assert saved({"a": 0.1, "b": -0.05}) == "needs 5 % more than (for b) and else saves 10 % of"
+    assert saved({"a": 0.1, "b": -0.05}) == "needs more for b (5 %) and else saves 10 % of"
     wasteful = dataclasses.replace(load_insect("hawkmoth").stroke, pitch_phase=1.0)
     text = said(content_of("hawkmoth", strokes={"hawkmoth": wasteful}))
     assert "% more than the power of the own stroke, both beaten" in text
@@ -56,7 +56,7 @@ def test_what_needs_more_power_is_not_said_to_save_less_than_nothing(content_of:
 
 def test_a_wing_of_one_s_own_has_a_reference_stroke_and_nothing_published(content_of: Make) -> None:
     text = said(content_of("hawkmoth", renamed="robot"))
-    assert "the stroke of reference, which carries" in text
+    assert "the reference stroke, which carries" in text
     assert "as published" not in text
 
 
