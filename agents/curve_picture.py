@@ -1,6 +1,7 @@
 """The learning curve of a run."""
 
 import csv
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,8 @@ from flapenv.drawing import BLUE, GREY, ORANGE, require_matplotlib, verbatim
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+NEEDED = ("wingbeats", "mean_gap", "worst_gap")
+"""Columns without which there is no curve."""
 LEAST_GAP = 1e-2
 """Smallest distance the logarithmic axis shows [%]."""
 
@@ -24,10 +27,35 @@ def read_curve(out: Path) -> list[dict[str, float]]:
 
     Raises:
         OSError: if the file cannot be read.
-        ValueError: if something in it is not a number.
+        ValueError: if it is not UTF-8, lacks a column or a number, or has something else in their place.
     """
-    with (out / CURVE).open(encoding="utf-8", newline="") as file:
-        return [{name: float(value) for name, value in row.items()} for row in csv.DictReader(file)]
+    path = out / CURVE
+    try:
+        with path.open(encoding="utf-8", newline="") as file:
+            header, *lines = csv.reader(file)
+    except (ValueError, csv.Error) as mistake:
+        raise ValueError(f"{path} is not a learning curve ({mistake}); allowed: a table with a header") from mistake
+    missing = [name for name in NEEDED if name not in header]
+    if missing:
+        raise ValueError(f"{path} has no column {', '.join(missing)}; allowed: at least {', '.join(NEEDED)}")
+    return [_point(header, line, f"{path}, line {number}") for number, line in enumerate(lines, start=2)]
+
+
+def _point(header: list[str], cells: list[str], where: str) -> dict[str, float]:
+    """A row of the table.
+
+    Raises:
+        ValueError: for another number of cells, or one that is no number.
+    """
+    if len(cells) != len(header):
+        raise ValueError(f"{where} has {len(cells)} cells; allowed: {len(header)}, as the header has")
+    try:
+        point = {name: float(cell) for name, cell in zip(header, cells, strict=True)}
+    except ValueError as mistake:
+        raise ValueError(f"{where}: {mistake}; allowed: numbers") from mistake
+    if not math.isfinite(point["wingbeats"]):
+        raise ValueError(f"{where}: wingbeats = {point['wingbeats']}; allowed: a finite number")
+    return point
 
 
 def draw_learning_curve(out: Path, distance: str, title: str) -> "Figure":

@@ -29,6 +29,7 @@ from agents.run_folder import (
     TENSORBOARD,
     open_run_folder,
     versions,
+    write_atomically,
 )
 from agents.tasks import Predictor, Task
 from agents.training_config import TrainingConfig, TrainingResult
@@ -169,8 +170,8 @@ def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgo
 
 def draw_pictures(title: str, task: Task, result: TrainingResult, policy: Predictor) -> None:
     """Add the learning curve, under a title, and the task's picture to the run's folder."""
-    draw_learning_curve(result.out, task.distance, title).savefig(result.out / CURVE_PICTURE)
-    task.draw(policy).savefig(result.out / RESULT_PICTURE)
+    write_atomically(result.out / CURVE_PICTURE, draw_learning_curve(result.out, task.distance, title).savefig)
+    write_atomically(result.out / RESULT_PICTURE, task.draw(policy).savefig)
 
 
 def _reported(config: TrainingConfig, task: Task, result: TrainingResult) -> Path | None:

@@ -1,6 +1,7 @@
 """Files that are there whole or not at all: a crash leaves the old file or the new one."""
 
 import contextlib
+import errno
 import json
 import os
 import stat
@@ -24,14 +25,24 @@ def whole_file(path: Path) -> Iterator[Path]:
     try:
         beside.touch()
     except OSError as error:
-        raise type(error)(f"path = {str(path)!r} cannot be written ({error}); allowed: a folder that can") from error
+        raise _named(error, path) from error
     try:
-        yield beside
+        try:
+            yield beside
+        except OSError as error:
+            raise _named(error, path) from error
         if target.exists():
             beside.chmod(stat.S_IMODE(target.stat().st_mode))
         beside.replace(target)
     finally:
         beside.unlink(missing_ok=True)
+
+
+def _named(error: OSError, path: Path) -> OSError:
+    """The same kind of error, with the file that was to be written and what may be done."""
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+    mend = "a disk with room for it" if full else "a folder that can"
+    return type(error)(f"path = {str(path)!r} cannot be written ({error}); allowed: {mend}")
 
 
 def json_text(content: Mapping[str, Any]) -> str:

@@ -1,5 +1,6 @@
 """Files are replaced whole, where they lie and as who may read them, or not at all."""
 
+import errno
 import json
 import stat
 from pathlib import Path
@@ -54,6 +55,20 @@ def test_the_longest_name_a_file_system_knows_can_be_written(tmp_path: Path) -> 
 def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match=r"path = '.*nowhere/a.json' cannot be written"):
         write_text(tmp_path / "nowhere" / "a.json", "new")
+
+
+def test_a_disk_that_fills_up_while_writing_is_told_with_the_file_and_what_helps(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    path.write_text("old")
+
+    def fill() -> None:
+        with whole_file(path):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(OSError, match=r"path = '.*a.json' cannot be written .*No space.*; allowed: a disk with room"):
+        fill()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_json_is_readable_and_refuses_nan(tmp_path: Path) -> None:

@@ -178,7 +178,7 @@ def _told(subject: str, asked: Any, kept: Path | None, command: str) -> str:
 def _keep(found: Any, kept: Path, command: str) -> None:
     """Write results.json, the picture and the report."""
     from agents.report.of_run import report_of_evaluation
-    from agents.run_folder import RESULT_PICTURE, RESULTS, open_run_folder, versions
+    from agents.run_folder import RESULT_PICTURE, RESULTS, open_run_folder, versions, write_atomically
     from flapenv.whole_file import write_json
 
     verdict = found.verdict
@@ -187,7 +187,7 @@ def _keep(found: Any, kept: Path, command: str) -> None:
     picture = found.draw()
     open_run_folder(kept, "")
     write_json(kept / RESULTS, {**about, "verdict": scores, **verdict.results, "versions": versions()})
-    picture.savefig(kept / RESULT_PICTURE)
+    write_atomically(kept / RESULT_PICTURE, picture.savefig)
     report_of_evaluation(found, kept, command)
 
 

@@ -22,13 +22,13 @@ SCRIPT = Path(__file__).with_name("beat.js")
 """What plays the figure wherever plotly.js and this script are on the page."""
 SECONDS = 2.4
 """That one wingbeat takes on the screen."""
-ROW, GAP, TOP, FOOT = 205, 34, 46, 56
+ROW, GAP, TOP, FOOT = 165, 34, 46, 56
 """Heights of a stroke's row, of its title, of what is above the first and below the last [px]."""
-ABOVE, BELOW, BESIDE = 2.1, 1.35, 0.7
-"""Room around the path of the section [mean chords]: above it for the arrows, below and beside it for the chord."""
+ABOVE, BELOW, BESIDE = 0.2, 1.35, 0.7
+"""Room above the highest arrow, and below and beside the path of the section for the chord [mean chords]."""
 LONGEST = 1.8
 """Arrow of the largest force [mean chords]."""
-TRAIL = "#d8d8d8"
+TRAIL = "#b0b0b0"
 
 
 def beat(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel, frames: int = 48) -> go.Figure:
@@ -53,26 +53,31 @@ def beat(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel, frame
         one, number = beats[label], "" if row == 1 else str(row)
         axes = {"type": "scatter", "xaxis": f"x{number}", "yaxis": f"y{number}", "hoverinfo": "skip"}
         traces += [axes | piece for piece in _still(one, unit)]
-        parts.append(_moving(one, unit))
+        parts.append(_moving(one, unit, one.history.paid_power(model.accounting) / insect.mass))
         pieces = zip(parts[-1][0], _looks(style.colour), strict=True)
         drawn = [axes | piece | looks for piece, looks in pieces]
         moving += range(len(traces), len(traces) + len(drawn))
         traces += drawn
     played = [[piece for made in parts for piece in made[frame]] for frame in range(frames)]
     kept = [{key: [piece.get(key) for piece in pieces] for key in ("x", "y", "text")} for pieces in played]
-    layout = _fitted(beats) | {"meta": {"beat": {"traces": moving, "seconds": SECONDS, "frames": kept}}}
+    layout = _fitted(beats, unit) | {"meta": {"beat": {"traces": moving, "seconds": SECONDS, "frames": kept}}}
     return go.Figure(data=traces, layout=layout)
 
 
-def _fitted(beats: Mapping[str, DrawnBeat]) -> dict[str, Any]:
+def _fitted(beats: Mapping[str, DrawnBeat], unit: float) -> dict[str, Any]:
     """The layout of the rows with their titles, and one scale for all."""
     layout = copy.deepcopy(_rows(len(beats)))
     reach = max(float(np.max(np.abs(one.axis[:, 0]))) for one in beats.values()) + BESIDE
+    tips = [unit * one.force[one.rows, 1] for one in beats.values()]
+    edges = [one.leading[:, 1] for one in beats.values()]
+    top = max(0.3 + unit, *(float(np.max(heights)) for heights in (*tips, *edges))) + ABOVE
     for number, (label, one) in enumerate(beats.items(), start=1):
         rate = one.motion.frequency
         title = f"<b>{html.escape(label)}</b>: {rate:.4g} Hz, shown {rate * SECONDS:.0f}× slower"
         layout["annotations"][number - 1]["text"] = title
-        layout[f"xaxis{number}" if number > 1 else "xaxis"]["range"] = rounded([-reach, reach])
+        axis = str(number) if number > 1 else ""
+        layout[f"xaxis{axis}"]["range"] = rounded([-reach, reach])
+        layout[f"yaxis{axis}"]["range"] = rounded([-BELOW, top])
     return layout
 
 
@@ -86,9 +91,7 @@ def _rows(count: int) -> dict[str, Any]:
     styled(figure, inside + TOP + FOOT)
     figure.update_annotations(x=0, xanchor="left", font_size=13)
     figure.update_xaxes(zeroline=False, showgrid=False)
-    figure.update_yaxes(
-        range=[-BELOW, ABOVE], showticklabels=False, ticks="", showline=False, zeroline=False, showgrid=False
-    )
+    figure.update_yaxes(showticklabels=False, ticks="", showline=False, zeroline=False, showgrid=False)
     for row in range(1, count + 1):
         across = "x" if row == 1 else f"x{row}"
         figure.update_yaxes(scaleanchor=across, scaleratio=1, row=row, col=1)
@@ -112,7 +115,7 @@ def _still(one: DrawnBeat, unit: float) -> list[dict[str, Any]]:
             "mode": "lines",
             "line": {"color": RULE, "width": 1, "dash": "dot"},
         },
-        {"x": x, "y": y, "mode": "lines", "line": {"color": TRAIL, "width": 3}, "connectgaps": False},
+        {"x": x, "y": y, "mode": "lines", "line": {"color": TRAIL, "width": 2}, "connectgaps": False},
         {
             "x": rounded([-reach - BESIDE / 2] * 2),
             "y": rounded([0.3, 0.3 + unit]),
@@ -125,14 +128,14 @@ def _still(one: DrawnBeat, unit: float) -> list[dict[str, Any]]:
     ]
 
 
-def _moving(one: DrawnBeat, unit: float) -> list[list[dict[str, Any]]]:
-    """What moves, for every frame: chord, leading edge, force, and the numbers of the instant."""
+def _moving(one: DrawnBeat, unit: float, power: np.ndarray) -> list[list[dict[str, Any]]]:
+    """What moves, for every frame: chord, leading edge, force, lift and power [W/kg] of the instant."""
     made = []
     for number, at in enumerate(one.rows):
         chord = rounded(np.stack([one.trailing[at], one.leading[at]], axis=1))
         foot, tip = one.axis[at], one.axis[at] + unit * one.force[at]
         arrow = rounded(np.stack([foot, tip], axis=1))
-        told = f"lift {one.force[at, 1]:.2f} weights, {one.specific_power[at]:.1f} W/kg"
+        told = f"lift {one.force[at, 1]:.2f} weights, {power[at]:.1f} W/kg"
         made.append(
             [
                 {"x": chord[0], "y": chord[1]},

@@ -2,7 +2,8 @@
 
 import copy
 import functools
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,20 +19,27 @@ from flapenv.model import HoverModel
 from flapenv.simulation import simulate
 
 STRIPS, STEPS = 12, 1440
-"""Of the blade element: so many that rates and accelerations of any stroke that one would beat are resolved."""
-POINTS = 180
-"""Of a curve that is drawn."""
+"""Of the blade element; a stroke that turns more sharply takes more steps, see `_steps`."""
+STEPS_PER_SHARPNESS, MOST_STEPS = 144, 14_400
+"""A turn of the wing takes the 1/Cθ-th part of a radian of the phase, and 23 instants."""
+BINS = 120
+"""Parts of the cycle of which a curve that is drawn keeps the least and the largest value."""
+USUAL = (15.0, 85.0)
+"""Of a curve's values over time, what an axis must have room for [%]: what is beyond is a spike."""
+SPIKE = 1.5
+"""How much longer an axis would have to be before spikes are cut off."""
 PANEL, GAP, FOOT = 190, 56, 56
 """Heights of a panel, of what is between two, and of what is below the last [px]."""
-LEGEND_ROW, TITLE = 22, 30
+LEGEND_ROW, TITLE = 22, 38
 """Heights of a row of the legend, and of a panel's title [px]."""
 LIFT, POWER = "lift / weight [-]", "power / mass [W/kg]"
+PURPLE = "#CC79A7"
 TERM_STYLES: dict[str, LineStyle] = {
     "translational": LineStyle(colour=BLUE, dash="solid", symbol="circle", width=3),
     "rotational": LineStyle(colour=ORANGE, dash="dash", symbol="square"),
-    "added-mass": LineStyle(colour=GREEN, dash="dot", symbol="diamond"),
-    "added-mass-pitch": LineStyle(colour=RED, dash="longdashdot", symbol="cross"),
-    "aerodynamic": LineStyle(colour=BLUE, dash="longdash", symbol="circle-open"),
+    "added mass": LineStyle(colour=GREEN, dash="dot", symbol="diamond"),
+    "added mass pitch": LineStyle(colour=RED, dash="longdashdot", symbol="cross"),
+    "aerodynamic": LineStyle(colour=PURPLE, dash="longdash", symbol="circle-open"),
     "inertia": LineStyle(colour=GREY, dash="dash", symbol="x"),
     "sum": LineStyle(colour=BLACK, dash="solid", symbol="star", width=1.2),
 }
@@ -47,26 +55,36 @@ def waveforms(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel) 
         model: of the aerodynamics.
     """
     panels = {"flapping angle φ": "φ [°]", "pitching angle θ": "θ [°]", "angle of attack α": "α [°]"}
-    curves = []
-    for label, style in line_styles(strokes).items():
-        beat = simulate(insect, strokes[label], model=model, strips=2, steps=STEPS, spacing="gauss")
-        for row, angle in enumerate((beat.kinematics.flap, beat.kinematics.pitch, beat.angle_of_attack), start=1):
-            curves.append(_curve(row, np.degrees(angle), label, style, named=label if row == 1 else None))
+    steps, looks = _steps(strokes.values()), line_styles(strokes)
+    beats = {
+        label: simulate(insect, strokes[label], model=model, strips=2, steps=steps, spacing="gauss") for label in looks
+    }
+    angles = [{label: np.degrees(beat.kinematics.flap) for label, beat in beats.items()}]
+    angles.append({label: np.degrees(beat.kinematics.pitch) for label, beat in beats.items()})
+    angles.append({label: np.degrees(beat.angle_of_attack) for label, beat in beats.items()})
+    curves = _curves(angles, looks, names={label: label for label in looks})
     figure = _stacked(panels, curves, legend_rows=(len(strokes) + 2) // 3)
-    figure.update_layout(yaxis_dtick=45, yaxis2_dtick=45, yaxis3_dtick=30)
+    figure.update_layout(yaxis_dtick=45, yaxis2_dtick=45, yaxis3_dtick=30, yaxis3_range=[0, 95])
     return figure
 
 
 def forces(insect: Insect, strokes: Mapping[str, Stroke], model: HoverModel) -> go.Figure:
-    """Lift over weight and power over body mass over t/T, translational term; arguments as `waveforms`."""
-    curves = []
-    for label, style in line_styles(strokes).items():
-        beat = simulate(insect, strokes[label], model=model, strips=2, steps=STEPS, spacing="gauss")
-        support, power = beat.lift / (insect.mass * model.gravity), beat.power / insect.mass
-        means = f"{label}: mean lift {np.mean(support):.3f} weights, {np.mean(power):.1f} W/kg"
-        for row, values in enumerate((support, power), start=1):
-            curves.append(_curve(row, values, label, style, named=means if row == 1 else None))
-    figure = _stacked({"lift": LIFT, "aerodynamic power": POWER}, curves, legend_rows=len(strokes))
+    """Lift over weight and the power that is counted over body mass, over t/T; arguments as `waveforms`.
+
+    The lift is the translational one. So is the power, but where only positive power is paid: there added mass and the
+    wings' inertia count, too.
+    """
+    steps, looks, paid = _steps(strokes.values()), line_styles(strokes), model.accounting == "positive"
+    counted = ("translational", "added-mass", "inertia") if paid else ("translational",)
+    cut: dict[str, Any] = {"strips": STRIPS, "spacing": "graded"} if paid else {"strips": 2, "spacing": "gauss"}
+    support, power, names = {}, {}, {}
+    for label in looks:
+        beat = simulate(insect, strokes[label], model=model, terms=counted, steps=steps, **cut)
+        support[label] = beat.terms["translational"].force[:, 2] / (insect.mass * model.gravity)
+        power[label] = beat.paid_power(model.accounting) / insect.mass
+        names[label] = f"{label}: mean lift {np.mean(support[label]):.3f} weights, {np.mean(power[label]):.1f} W/kg"
+    title = "power that is paid, with inertia" if paid else "aerodynamic power"
+    figure = _stacked({"lift": LIFT, title: POWER}, _curves([support, power], looks, names), legend_rows=len(strokes))
     figure.update_layout(legend_orientation="v")
     return figure
 
@@ -76,22 +94,50 @@ def terms(insect: Insect, stroke: Stroke, model: HoverModel) -> go.Figure:
     known = [name for name in TERMS if name != "inertia" or insect.wing.mass is not None]
     if stroke.flap_shape == 1:  # whose accelerations are infinite at the corners
         known = ["translational"]
-    beat = simulate(insect, stroke, model=model, terms=known, strips=STRIPS, steps=STEPS, spacing="graded")
+    steps = _steps([stroke])
+    beat = simulate(insect, stroke, model=model, terms=known, strips=STRIPS, steps=steps, spacing="graded")
     air = [name for name in known if name != "inertia"]
-    lift = {name: beat.terms[name].force[:, 2] / (insect.mass * model.gravity) for name in air}
-    power = {name: beat.terms[name].power.sum(axis=0) / insect.mass for name in known}
-    panels = {"lift by term": lift, "aerodynamic power by term": {name: power[name] for name in air}}
+    told = {name: name.replace("-", " ") for name in known}
+    lift = {told[name]: beat.terms[name].force[:, 2] / (insect.mass * model.gravity) for name in air}
+    power = {told[name]: beat.terms[name].power.sum(axis=0) / insect.mass for name in known}
+    panels = {"lift by term": lift, "power by term": {told[name]: power[told[name]] for name in air}}
     if "inertia" in known:
-        of_air = np.sum([power[name] for name in air], axis=0)
-        panels["with the wings' inertia"] = {"aerodynamic": of_air, "inertia": power["inertia"]}
-    curves, listed = [], set[str]()
-    for row, parts in enumerate(panels.values(), start=1):
-        for name, values in {**parts, "sum": np.sum(list(parts.values()), axis=0)}.items():
-            label = name.replace("-", " ")
-            curves.append(_curve(row, values, label, TERM_STYLES[name], named=None if name in listed else label))
-            listed.add(name)
+        of_air = np.sum([power[told[name]] for name in air], axis=0)
+        panels["with inertia"] = {"aerodynamic": of_air, "inertia": power["inertia"]}
+    summed = [{**parts, "sum": np.sum(list(parts.values()), axis=0)} for parts in panels.values()]
+    curves = _curves(summed, TERM_STYLES, names={name: name for name in TERM_STYLES})
     titles = {title: LIFT if parts is lift else POWER for title, parts in panels.items()}
-    return _stacked(titles, curves, legend_rows=3)
+    figure = _stacked(titles, curves, legend_rows=3)
+    for row, parts in enumerate(summed):
+        _cut_spikes(figure, row, list(parts.values()), counted=(lift if row == 0 else power)["translational"])
+    return figure
+
+
+def _steps(strokes: Iterable[Stroke]) -> int:
+    """Instants of the cycle that resolve the sharpest turn of some strokes, a multiple of `BINS`."""
+    sharpest = max(max(stroke.pitch_shape, 1 / math.sqrt(max(1 - stroke.flap_shape**2, 1e-6))) for stroke in strokes)
+    wanted = min(max(STEPS, STEPS_PER_SHARPNESS * sharpest), MOST_STEPS)
+    return BINS * math.ceil(wanted / BINS)
+
+
+def _cut_spikes(figure: go.Figure, row: int, curves: Sequence[np.ndarray], counted: np.ndarray) -> None:
+    """Leave short spikes out of a panel's range, which would flatten all the rest, and say how far they reach.
+
+    Args:
+        figure: as `_stacked` makes it, changed in place.
+        row: the panel, from 0.
+        curves: every curve in it, shape (steps,) each.
+        counted: the one that is shown whole whatever it does.
+    """
+    usual = [np.percentile(values, USUAL) for values in curves]
+    low = min(0.0, float(np.min(counted)), *(float(ends[0]) for ends in usual))
+    high = max(0.0, float(np.max(counted)), *(float(ends[1]) for ends in usual))
+    least, most = (float(end(np.concatenate(curves))) for end in (np.min, np.max))
+    if most - least <= SPIKE * (high - low):
+        return
+    room = 0.08 * (high - low)
+    figure.layout["yaxis" if row == 0 else f"yaxis{row + 1}"].range = rounded([low - room, high + room])
+    figure.layout.annotations[row].text += f"; peaks {rounded(least):,g}, {rounded(most):,g}"
 
 
 def _stacked(panels: Mapping[str, str], curves: Sequence[dict[str, Any]], legend_rows: int) -> go.Figure:
@@ -99,7 +145,7 @@ def _stacked(panels: Mapping[str, str], curves: Sequence[dict[str, Any]], legend
 
     Args:
         panels: titles, and labels of the vertical axes with units.
-        curves: as `_curve` makes them.
+        curves: as `_curves` makes them.
         legend_rows: that the legend takes on a phone.
     """
     layout = copy.deepcopy(_layout(tuple(panels.items()), legend_rows))
@@ -129,22 +175,48 @@ def _layout(panels: tuple[tuple[str, str], ...], legend_rows: int) -> dict[str, 
     return layout
 
 
-def _curve(row: int, values: np.ndarray, label: str, style: LineStyle, named: str | None) -> dict[str, Any]:
-    """One curve in a panel, with a line in the legend where it is named there."""
-    every = len(values) // POINTS
-    chosen = slice(every // 2, None, every)
-    time = (np.arange(len(values)) + 0.5) / len(values)
-    axis = "" if row == 1 else str(row)
-    return {
-        "type": "scatter",
-        "x": rounded(time[chosen]),
-        "y": rounded(values[chosen]),
-        "mode": "lines",
-        "line": style.line,
-        "name": named or label,
-        "legendgroup": label,
-        "showlegend": named is not None,
-        "hovertemplate": f"{label} %{{y:.4g}}<extra></extra>",
-        "xaxis": f"x{axis}",
-        "yaxis": f"y{axis}",
-    }
+def _curves(
+    panels: Sequence[Mapping[str, np.ndarray]], looks: Mapping[str, LineStyle], names: Mapping[str, str]
+) -> list[dict[str, Any]]:
+    """Curves of all panels at the same instants, each named once in the legend.
+
+    Args:
+        panels: values at even instants by label, shape (steps,) each.
+        looks: by label.
+        names: in the legend, by label.
+    """
+    every = np.array([values for parts in panels for values in parts.values()])
+    chosen, steps, listed = _telling(every), every.shape[1], set[str]()
+    time = rounded((chosen + 0.5) / steps)
+    curves = []
+    for row, parts in enumerate(panels, start=1):
+        axis = "" if row == 1 else str(row)
+        for label, values in parts.items():
+            curves.append(
+                {
+                    "type": "scatter",
+                    "x": time,
+                    "y": rounded(values[chosen]),
+                    "mode": "lines",
+                    "line": looks[label].line,
+                    "name": names[label],
+                    "legendgroup": label,
+                    "showlegend": label not in listed,
+                    "hovertemplate": f"{label} %{{y:.4g}}<extra></extra>",
+                    "xaxis": f"x{axis}",
+                    "yaxis": f"y{axis}",
+                }
+            )
+            listed.add(label)
+    return curves
+
+
+def _telling(curves: np.ndarray) -> np.ndarray:
+    """The instants at which one of some curves is least or largest within its part of the cycle, in order.
+
+    Args:
+        curves: shape (curves, steps), the steps a multiple of `BINS`.
+    """
+    parts = curves.reshape(len(curves), BINS, -1)
+    starts = np.arange(BINS) * parts.shape[2]
+    return np.unique(np.concatenate([parts.argmin(axis=2) + starts, parts.argmax(axis=2) + starts]))

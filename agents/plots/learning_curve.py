@@ -37,7 +37,14 @@ def learning_curve(rows: Sequence[Mapping[str, float]], distance: str) -> go.Fig
             hovertemplate="%{x:.3f} million wingbeats: %{customdata:.3f} %<extra>" + label + "</extra>",
         )
     styled(figure, HEIGHT)
-    figure.add_hline(y=1, line={"color": GREY, "width": 1, "dash": "dot"})
+    figure.add_scatter(  # a curve, so that the axis has room for it and the legend a name
+        name="1 %",
+        x=[0, float(np.max(wingbeats)) / 1e6],
+        y=[1, 1],
+        mode="lines",
+        line={"color": GREY, "width": 1.5, "dash": "dot"},
+        hoverinfo="skip",
+    )
     figure.update_layout(
         xaxis={"title": {"text": "wingbeats [millions]"}},
         yaxis={"title": {"text": f"{distance} [%]"}, "type": "log", "dtick": 1},

@@ -7,10 +7,12 @@ import plotly.graph_objects as go
 from agents.plots.names import plain
 from agents.plots.style import STYLES, styled
 from flapenv.assessment import StrokeAssessment
-from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE
+from flapenv.drawing import BLACK, GREEN, ORANGE
 
 ROW_HEIGHT, FRAME_HEIGHT = 42, 140
 """Of an insect, and of everything around the bars [px]."""
+LIGHT_BLUE = "#7DB9E0"
+"""On which black whiskers are seen."""
 BY_CFD, BY_MODEL, AS_IS = (
     "of CFD's power",
     "in this model, both carrying the weight",
@@ -30,9 +32,9 @@ def savings(assessments: Sequence[StrokeAssessment]) -> go.Figure:
     names = [plain(one.insect.name) for one in assessments]
     figure = go.Figure()
     spans = [_percent(one.saving_uncertainty) for one in assessments]
-    whiskers = {"type": "data", "array": spans, "color": BLACK, "thickness": 1.5, "width": 4}
+    whiskers = {"type": "data", "array": spans, "color": BLACK, "thickness": 2, "width": 7}
     for label, values, colour, pattern in (
-        (BY_MODEL, [one.saving for one in assessments], BLUE, ""),
+        (BY_MODEL, [one.saving for one in assessments], LIGHT_BLUE, ""),
         (BY_CFD, [one.saving_to_cfd for one in assessments], ORANGE, "/"),
     ):
         figure.add_bar(

@@ -1,7 +1,7 @@
 """What it costs to leave the optimum by a small step, parameter by parameter."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 import plotly.graph_objects as go
@@ -11,6 +11,7 @@ from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.drawing import BLUE, GREY
 from flapenv.optimum import Optimum
+from flapenv.problem import HoverProblem
 
 HEIGHT = 380
 """Of the figure [px]."""
@@ -62,14 +63,20 @@ def step_costs(best: Optimum) -> dict[str, float]:
     return costs
 
 
-def sensitivities(optima: Sequence[Optimum]) -> go.Figure:
+def fixed_parameters(problem: HoverProblem) -> list[str]:
+    """The parameters of the stroke that the problem's box leaves no choice of."""
+    return [name for name in STROKE_PARAMETERS if not problem.box.is_free(name)]
+
+
+def sensitivities(optima: Sequence[Optimum], fixed: Collection[str] = ()) -> go.Figure:
     """Bars of the median of the insects, whiskers from the least to the most, in percent of the power.
 
     Args:
         optima: one of each insect.
+        fixed: parameters that have no bar.
     """
     every = [costs for costs in map(step_costs, optima) if costs]
-    names = ["weight_support", *STROKE_PARAMETERS]
+    names = ["weight_support", *(name for name in STROKE_PARAMETERS if name not in fixed)]
     table = 100 * np.array([[costs.get(name, 0.0) for name in names] for costs in every]).reshape(-1, len(names))
     middle = np.median(table, axis=0) if len(table) else np.zeros(len(names))
     high, low = (np.max(table, axis=0), np.min(table, axis=0)) if len(table) else (middle, middle)
@@ -87,8 +94,6 @@ def sensitivities(optima: Sequence[Optimum]) -> go.Figure:
             "color": GREY,
             "thickness": 1.5,
         },
-        text=[f"{value:.2f}" for value in middle],
-        textposition="none",
         hovertemplate="%{y}: %{x:.3f} % of the power<extra></extra>",
     )
     styled(figure, HEIGHT)

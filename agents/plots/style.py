@@ -46,9 +46,8 @@ STYLES: dict[str, LineStyle] = {
     "learned": LineStyle(colour=BLUE, dash="solid", symbol="circle", width=3),
     "optimal": LineStyle(colour=BLACK, dash="dash", symbol="diamond"),
     "own": LineStyle(colour=ORANGE, dash="dashdot", symbol="square", width=3),
-    "CFD": LineStyle(colour=RED, dash="dot", symbol="x"),
 }
-"""By label of a stroke or a source; what is named otherwise takes the looks that are left, in `OTHERS`' order."""
+"""By label of a stroke; what is named otherwise takes the looks that are left, in `OTHERS`' order."""
 OTHERS: tuple[LineStyle, ...] = (
     STYLES["learned"],
     LineStyle(colour=RED, dash="dot", symbol="triangle-up"),
@@ -133,17 +132,3 @@ def config() -> dict[str, Any]:
         "plotlyServerURL": "",
         "scrollZoom": False,
     }
-
-
-def figure_html(figure: go.Figure, div_id: str) -> str:
-    """The figure as a piece of HTML; the page must hold plotly.js once.
-
-    Args:
-        figure: to show.
-        div_id: of its element, unique on the page.
-    """
-    height = f"{figure.layout.height}px"
-    html: str = figure.to_html(
-        full_html=False, include_plotlyjs=False, div_id=div_id, config=config(), default_height=height
-    )
-    return html

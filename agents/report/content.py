@@ -21,6 +21,7 @@ class ReportContent:
         told: what else was found, each a table or a few lines as a terminal shows them.
         picture: the task's picture, a PNG file's bytes; None to leave it out.
         curve: points of the learning curve, from `agents.curve_picture.read_curve`; empty where nothing was trained.
+        missing: what could not be shown and why, a sentence each.
         facts: what is needed to repeat it, by name, in the order shown: command, seed, versions.
         config: the rest of it, as JSON keeps it; empty for none.
     """
@@ -33,5 +34,6 @@ class ReportContent:
     told: Sequence[str] = ()
     picture: bytes | None = None
     curve: Sequence[Mapping[str, float]] = ()
+    missing: Sequence[str] = ()
     facts: Mapping[str, str]
     config: Mapping[str, Any]

@@ -9,15 +9,19 @@ from agents.plots.cycle import forces, terms, waveforms
 from agents.plots.front import front
 from agents.plots.learning_curve import learning_curve
 from agents.plots.savings import savings
-from agents.plots.sensitivities import sensitivities
+from agents.plots.sensitivities import fixed_parameters, sensitivities
 from agents.report.content import ReportContent
 from flapenv.aero.checks import record
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment
+from flapenv.model import HoverModel
 from flapenv.trade_off import weight_front
 
 FRONT_WEIGHTS = (0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4, 1.5, 1.6)
 """Weight supports at which fronts are found, with the full weight among them."""
+
+
+SLOWED = "Each is slowed down so that one beat takes as long on the screen as the other's."
 
 
 @record
@@ -59,10 +63,15 @@ def curve_figure(content: ReportContent) -> PlacedFigure | None:
 
 def savings_figure(strokes: Sequence[StrokeAssessment], called: str) -> PlacedFigure:
     """How much less power is needed."""
+    hatched = (
+        "Hatched bars: of the power that CFD found. " if any(one.saving_to_cfd is not None for one in strokes) else ""
+    )
+    whiskers = any(one.saving_uncertainty is not None for one in strokes)
     text = (
         f"What the {called} stroke saves of the power of the insect's own stroke. Plain bars: in this model, both "
-        "strokes slowed or hurried until they carry exactly the weight; whiskers: what the model's error against CFD "
-        "makes of it. Hatched bars: of the power that CFD found. Diamonds: both as they are, whatever they lift."
+        "strokes slowed or hurried until they carry exactly the weight"
+        f"{'; whiskers: what the model is off CFD makes of it' if whiskers else ''}. {hatched}"
+        "Diamonds: both as they are, whatever they lift."
     )
     return placed(savings(strokes), "savings", "Power saved", text)
 
@@ -74,8 +83,9 @@ def front_figure(strokes: Sequence[StrokeAssessment], called: str) -> PlacedFigu
         return None
     fronts = [weight_front(one.insect, FRONT_WEIGHTS, one.problem) for one in hovering]
     text = (
-        "Least power (grey, one line an insect) against the weight that is carried, both over the insect's optimum at "
-        f"its full weight, so that all fronts pass through (1, 1). Circles: {called}. Squares: the insects' own "
+        "Least power (grey; insects whose fronts agree within 1 % share a line, which ends where none of them can "
+        "carry more) against the weight that is carried, both over the insect's optimum at its full weight, so that "
+        f"all fronts pass through (1, 1). Circles: {called}, named where they lie elsewhere. Squares: the insects' own "
         "strokes at the weight that they carry in this model. Below its line no stroke of the box lies."
     )
     return placed(front(hovering, fronts, called), "front", "Power against weight support", text)
@@ -86,11 +96,34 @@ def sensitivities_figure(strokes: Sequence[StrokeAssessment]) -> PlacedFigure | 
     optima = [one.best for one in strokes if one.best.feasible and one.best.sensitivity]
     if not optima:
         return None
+    fixed = fixed_parameters(strokes[0].problem)
+    several = "median of the insects, whiskers from the least to the most. " if len(optima) > 1 else ""
+    left_out = "; parameters that the problem fixes have no line" if fixed else ""
     text = (
-        "What a small step from the optimum costs: median of the insects, whiskers from the least to the most. No bar: "
-        "the optimum lies inside the box, where a small step costs nothing to first order."
+        f"What a small step from the optimum costs: {several}No bar: "
+        f"the optimum lies inside the box, where a small step costs nothing to first order{left_out}."
     )
-    return placed(sensitivities(optima), "sensitivities", "What counts", text)
+    return placed(sensitivities(optima, fixed), "sensitivities", "What counts", text)
+
+
+def counted_of(model: HoverModel) -> str:
+    """What the figure of force and power shows, in words."""
+    if model.accounting == "positive":
+        return (
+            "Translational lift over weight, and over body mass the power that is paid: each wing's power of "
+            "translation, added mass and inertia together, where it is positive"
+        )
+    return "Translational lift over weight and aerodynamic power over body mass"
+
+
+def counting_of(model: HoverModel) -> str:
+    """Which of the terms count, in a sentence."""
+    if model.accounting == "positive":
+        return (
+            "In the table above the translational term counts for the lift, and for the power those of translation, "
+            "added mass and inertia together, where they are positive; the others show what it leaves out."
+        )
+    return "Only the translational term counts in the table above; the others show what it leaves out."
 
 
 def strokes_of(one: StrokeAssessment, called: str) -> dict[str, Stroke]:
@@ -116,7 +149,7 @@ def insect_figures(one: StrokeAssessment, called: str, number: int) -> dict[str,
             beat(insect, beside, model),
             "The wingbeat",
             f"Wing section at r̂₂ R seen from the wing tip, dot at the leading edge, arrow for the force: "
-            f"{', '.join(beside)}. Each is slowed so that a beat takes as long.",
+            f"{', '.join(beside)}. {SLOWED if len(beside) > 1 else ''}",
         ),
         "waveforms": (
             waveforms(insect, strokes, model),
@@ -126,13 +159,12 @@ def insect_figures(one: StrokeAssessment, called: str, number: int) -> dict[str,
         "forces": (
             forces(insect, strokes, model),
             "Force and power",
-            f"Lift over weight and aerodynamic power over body mass, over the cycle: {names}.",
+            f"{counted_of(model)}, over the cycle: {names}.",
         ),
         "terms": (
             terms(insect, one.stroke, model),
             f"Term by term: {called}",
-            "Lift and power of the stroke by the blade element, term by term. Only the translational term counts in "
-            "the table above; the others show what it leaves out.",
+            f"Lift and power of the stroke by the blade element, term by term. {counting_of(model)}",
         ),
     }
     return {key: placed(figure, f"{key}-{number}", *told) for key, (figure, *told) in drawn.items()}

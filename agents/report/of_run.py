@@ -1,6 +1,9 @@
 """Reports of training runs and of evaluations, from what lies in their folders."""
 
 import os
+import platform
+import sys
+from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -9,6 +12,7 @@ from agents.report.content import ReportContent
 from agents.report.page import write_report
 from agents.run_folder import CURVE, POLICY_CARD, REPORT, RESULT_PICTURE, versions
 from agents.tasks.task import Task
+from flapenv.aero.checks import one_line
 from flapenv.read_json import read_object
 
 if TYPE_CHECKING:
@@ -33,6 +37,7 @@ def report_of_run(config: "TrainingConfig", task: Task, result: "TrainingResult"
     """
     card = read_object(result.out / POLICY_CARD)
     picture = result.out / RESULT_PICTURE
+    curve, missing = _curve(result.out)
     stopped = ", stopped early" if result.interrupted else ""
     content = ReportContent(
         title=f"{config.name}, seed {config.seed}",
@@ -40,7 +45,8 @@ def report_of_run(config: "TrainingConfig", task: Task, result: "TrainingResult"
         about=f"{task.environment}, judged by the {task.distance}",
         distance=task.distance,
         picture=picture.read_bytes(),
-        curve=read_curve(result.out) if (result.out / CURVE).is_file() else (),
+        curve=curve,
+        missing=missing,
         facts={
             "command": config.command or "python train.py --config config.json, with the file in this folder",
             "preset": config.name,
@@ -56,15 +62,22 @@ def report_of_run(config: "TrainingConfig", task: Task, result: "TrainingResult"
 
 
 def report_of_evaluation(found: "Evaluated", out: Path, command: str) -> Path:
-    """Write the report of what was evaluated into the folder that holds its picture; arguments as `report_of_run`.
+    """Write the report of what was evaluated into the folder that holds its picture.
 
     Args:
         found: the verdict and what it is about; a run's policy shows the learning curve of its folder.
         out: the folder.
         command: what was typed.
+
+    Returns:
+        The file.
+
+    Raises:
+        OSError: if the picture cannot be read, or the report not be written.
     """
     about = {name: value for name, value in found.about.items() if isinstance(value, str | float) and value}
-    card, trained = found.card, found.source.parent if found.source else None
+    card = found.card
+    curve, missing = _curve(found.source.parent) if found.source else ([], [])
     content = ReportContent(
         title=found.title,
         about=f"judged by the {found.about['distance']}",
@@ -73,7 +86,8 @@ def report_of_evaluation(found: "Evaluated", out: Path, command: str) -> Path:
         called=found.called,
         told=found.told,
         picture=(out / RESULT_PICTURE).read_bytes(),
-        curve=read_curve(trained) if trained and (trained / CURVE).is_file() else (),
+        curve=curve,
+        missing=missing,
         facts={
             "command": command,
             **{name: str(value) for name, value in about.items() if name != "distance"},
@@ -85,7 +99,23 @@ def report_of_evaluation(found: "Evaluated", out: Path, command: str) -> Path:
     return write_report(out / REPORT, content)
 
 
+def _curve(folder: Path) -> tuple[list[dict[str, float]], list[str]]:
+    """The learning curve of a folder, if there is one, and why it cannot be shown; said on stderr, too."""
+    if not (folder / CURVE).is_file():
+        return [], []
+    try:
+        return read_curve(folder), []
+    except (ValueError, OSError) as mistake:
+        text = f"The learning curve is left out: {one_line(mistake)}"
+        print(text, file=sys.stderr)
+        return [], [text]
+
+
 def machine_facts() -> dict[str, str]:
     """What it was made on, for `ReportContent.facts`."""
-    told = ", ".join(f"{package} {version}" for package, version in versions().items())
-    return {"versions": told, "machine": f"{os.cpu_count()} cores"}
+    told = {**versions(), "plotly": metadata.version("plotly")}
+    return {
+        "versions": ", ".join(f"{package} {version}" for package, version in told.items()),
+        "system": f"{platform.system()} {platform.release()}, {platform.machine()}",
+        "machine": f"{os.cpu_count()} cores, OMP_NUM_THREADS {os.environ.get('OMP_NUM_THREADS', 'not set')}",
+    }

@@ -24,11 +24,11 @@ from agents.report.figures import (
     sensitivities_figure,
     strokes_of,
 )
+from agents.report.files import kept_files
 from agents.report.tables import (
     Table,
-    beyond_table,
     models_table,
-    outside_table,
+    outside_tables,
     results_table,
     steps_table,
     strokes_table,
@@ -103,6 +103,7 @@ def report_page(content: ReportContent) -> str:
         picture=None if content.picture is None else base64.b64encode(content.picture).decode("ascii"),
         config=json.dumps(content.config, indent=2, ensure_ascii=False) if content.config else "",
         curve=curve_figure(content),
+        files=kept_files(content.verdict.assessments),
         **_of_strokes(content),
     )
 
@@ -121,7 +122,7 @@ def _of_strokes(content: ReportContent) -> dict[str, Any]:
         "sensitivities": sensitivities_figure(strokes),
         "steps": steps_table(strokes),
         "models": models_table(others) if any(one.rankings for one in others) else None,
-        "outside": [table for table in (outside_table(strokes), beyond_table(strokes)) if table.rows],
+        "outside": outside_tables(strokes),
         "repeated": content.verdict.text == assessment_table(strokes, called),
     }
 
@@ -134,12 +135,20 @@ def _insect_part(one: StrokeAssessment, called: str, number: int) -> InsectPart:
             f"{one.specific_power:.2f}"
             + ("" if one.power_uncertainty is None else f" ± {one.power_uncertainty:.1f}")
             + f" W/kg, own stroke {one.own_specific_power:.1f} W/kg"
-            + ("" if one.cfd_power is None else f" (CFD {one.cfd_power:.0f})")
+            + _told_by_cfd(one)
         ),
         strokes=strokes_table(strokes_of(one, called)),
         flags=one.flags,
         **insect_figures(one, called, number),
     )
+
+
+def _told_by_cfd(one: StrokeAssessment) -> str:
+    """What CFD found for the own stroke, in brackets; where springs are missing here, that CFD has them."""
+    if one.cfd_power is None:
+        return ""
+    springs = "" if one.problem.model.accounting == "elastic" else " of aerodynamic power, with springs"
+    return f" (CFD {one.cfd_power:.0f}{springs})"
 
 
 def script_data(text: str) -> Markup:

@@ -1,7 +1,7 @@
 // Draws each figure when it is first looked at, and all of them for the printer. The figures stand beside their places.
 "use strict";
 (() => {
-  const PRINTED = 680, PRINTED_PAIR = 460; // px, widths on an A4 page within its margins, alone and side by side
+  const PRINTED = 680, PRINTED_PAIR = 635; // px, widths on an A4 page within its margins, alone, and of a pair before its zoom
   const config = JSON.parse(document.getElementById("plot-config").textContent);
   const places = [...document.querySelectorAll(".plot")];
 

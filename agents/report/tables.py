@@ -4,12 +4,12 @@ import math
 from collections.abc import Mapping, Sequence
 
 from agents.evaluation.assessment_table import grouped, number, table_row
-from agents.plots.sensitivities import STEPS, step_costs
+from agents.plots.sensitivities import STEPS, fixed_parameters, step_costs
 from flapenv.aero.checks import record
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment
-from flapenv.assessment.validity import Quantity
+from flapenv.assessment.validity import ANGLES, BOX, CASES
 
 
 @record
@@ -89,21 +89,22 @@ def models_table(strokes: Sequence[StrokeAssessment]) -> Table:
     )
 
 
-def outside_table(strokes: Sequence[StrokeAssessment]) -> Table:
-    """What no CFD case covers."""
-    return _quantities_table("What no CFD case covers", "covered", {one.insect.name: one.outside for one in strokes})
-
-
-def beyond_table(strokes: Sequence[StrokeAssessment]) -> Table:
-    """What lies beyond the problem's box, so that a gap may be negative."""
-    caption = "What lies beyond the problem's box, where the optimum was not sought"
-    return _quantities_table(caption, "box", {one.insect.name: one.beyond_box for one in strokes})
-
-
-def _quantities_table(caption: str, allowed: str, outside: Mapping[str, Sequence[Quantity]]) -> Table:
-    """A row for each quantity and range with the insects it holds for."""
-    columns = (("quantity", ""), ("here", ""), (allowed, ""), ("of", ""))
-    return Table(caption=caption, columns=columns, rows=tuple(grouped(outside)))
+def outside_tables(strokes: Sequence[StrokeAssessment]) -> list[Table]:
+    """What lies outside of the CFD cases, of the model's angles and of the box, a table for each that has something."""
+    tables = []
+    for basis, caption, allowed in (
+        (CASES, "What no CFD case covers", "covered"),
+        (ANGLES, "Angles for which the model is not called accurate", "accurate"),
+        (BOX, "What lies beyond the problem's box, where the optimum was not sought", "box"),
+    ):
+        found = {
+            one.insect.name: [quantity for quantity in (*one.outside, *one.beyond_box) if quantity.basis == basis]
+            for one in strokes
+        }
+        columns = (("quantity", ""), ("here", ""), (allowed, ""), ("of", ""))
+        if any(found.values()):
+            tables.append(Table(caption=caption, columns=columns, rows=tuple(grouped(found))))
+    return tables
 
 
 def strokes_table(strokes: Mapping[str, Stroke]) -> Table:
@@ -131,10 +132,14 @@ def steps_table(strokes: Sequence[StrokeAssessment]) -> Table:
     """What a step from each insect's optimum costs, and at which bounds of the box the optimum lies."""
     rows = []
     for one in strokes:
-        costs, sides = step_costs(one.best), dict(one.best.active_bounds)
+        costs, sides, fixed = step_costs(one.best), dict(one.best.active_bounds), fixed_parameters(one.problem)
         marks = {"upper": " ↑", "lower": " ↓"}
         cells = [
-            f"{100 * costs[name]:.2f}{marks.get(sides.get(name, ''), '')}" if name in costs else "none"
+            "fixed"
+            if name in fixed
+            else f"{100 * costs[name]:.2f}{marks.get(sides.get(name, ''), '')}"
+            if name in costs
+            else "none"
             for name in STEPS
         ]
         rows.append((one.insect.name, *cells))
@@ -145,6 +150,6 @@ def steps_table(strokes: Sequence[StrokeAssessment]) -> Table:
         note=(
             "↑ ↓: the optimum lies at the upper or lower bound of the box, and the step leads back into it. 0.00 "
             "without an arrow: the optimum lies inside, where a small step costs nothing to first order. Λ: what "
-            "carrying more costs."
+            "carrying more costs. fixed: the problem leaves no choice."
         ),
     )

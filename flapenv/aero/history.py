@@ -93,8 +93,8 @@ class WingbeatHistory:
         """Mean vertical force over the cycle [N]."""
         return float(np.mean(self.lift))
 
-    def mean_power(self, accounting: str = "elastic") -> float:
-        """Mean power of the wing pair over the cycle [W].
+    def paid_power(self, accounting: str = "elastic") -> np.ndarray:
+        """Power of the wing pair that is paid [W].
 
         Args:
             accounting: "elastic", where negative power is stored and returned (Sun & Du's convention, and the paper's),
@@ -105,4 +105,12 @@ class WingbeatHistory:
         """
         require_name("accounting", accounting, ACCOUNTING)
         paid = self.wing_power if accounting == "elastic" else np.maximum(self.wing_power, 0)
-        return float(np.mean(np.sum(paid, axis=0)))
+        return np.sum(paid, axis=0)
+
+    def mean_power(self, accounting: str = "elastic") -> float:
+        """Mean of `paid_power` over the cycle [W].
+
+        Raises:
+            ValueError: for another accounting.
+        """
+        return float(np.mean(self.paid_power(accounting)))

@@ -150,9 +150,18 @@ def write_wing(path: str | os.PathLike[str], wing_file: WingFile) -> None:
     if found.suffix.lower() != ".json":
         raise ValueError(f"{found} does not end in .json; allowed: NAME.json")
     require_place(found)
+    write_text(found, wing_to_text(wing_file))
+
+
+def wing_to_text(wing_file: WingFile) -> str:
+    """What `write_wing` writes.
+
+    Raises:
+        TypeError: for a planform that is a function.
+    """
     parts = {name: _told(value) for name, value in wing_file.insect.to_dict().items() if value is not None}
     limits = {"limits": {name: list(bounds) for name, bounds in wing_file.limits.items()}} if wing_file.limits else {}
-    write_text(found, json_text({"format": FORMAT, "version": VERSION, "units": WING_UNITS, **parts, **limits}))
+    return json_text({"format": FORMAT, "version": VERSION, "units": WING_UNITS, **parts, **limits})
 
 
 def _told(value: Any) -> Any:

@@ -1,6 +1,7 @@
 """The report in a browser: it opens at once, reaches nothing, moves, and fits every width and paper."""
 
 import io
+import itertools
 import re
 import time
 from pathlib import Path
@@ -103,6 +104,42 @@ def test_the_wings_beat_and_stop_on_demand(watched: Any, report: Path) -> None:
     stopped = page.get_attribute("#beat-0", "data-frame")
     page.wait_for_timeout(300)
     assert page.get_attribute("#beat-0", "data-frame") == stopped
+
+
+def test_the_drawn_wing_is_that_of_the_frame_it_is_said_to_be(watched: Any, report: Path) -> None:
+    page = watched.page
+    page.goto(report.as_uri())
+    page.locator("#beat-0").scroll_into_view_if_needed()
+    page.wait_for_selector("#beat-0[data-frame]:not([data-frame='0'])")
+    page.click("#beat-0 .beat-button")
+    page.wait_for_timeout(200)
+    drawn, wanted = page.evaluate(
+        "() => { const figure = document.getElementById('beat-0'), beat = figure.layout.meta.beat;"
+        " const frame = beat.frames[Number(figure.dataset.frame)];"
+        " return [beat.traces.map(i => [[...figure.data[i].x], [...figure.data[i].y]]),"
+        "         beat.traces.map((_, i) => [frame.x[i], frame.y[i]])]; }"
+    )
+    assert drawn == wanted
+
+
+def test_frames_follow_each_other_and_a_beat_takes_its_time(watched: Any, report: Path) -> None:
+    page = watched.page
+    page.goto(report.as_uri())
+    page.locator("#beat-0").scroll_into_view_if_needed()
+    page.wait_for_selector("#beat-0[data-frame]:not([data-frame='0'])")
+    seen, seconds, count = page.evaluate(
+        "() => new Promise(done => { const figure = document.getElementById('beat-0'), seen = [];"
+        " const { seconds, frames } = figure.layout.meta.beat, until = performance.now() + 2500 * seconds;"
+        " const look = now => { const frame = Number(figure.dataset.frame);"
+        "   if (!seen.length || seen[seen.length - 1][1] !== frame) seen.push([now, frame]);"
+        "   now < until ? requestAnimationFrame(look) : done([seen, seconds, frames.length]); };"
+        " requestAnimationFrame(look); })"
+    )
+    steps = [(after - before) % count for (_, before), (_, after) in itertools.pairwise(seen)]
+    assert all(0 < step < count / 3 for step in steps)
+    turns = [now for (_, before), (now, after) in itertools.pairwise(seen) if after < before]
+    assert len(turns) >= 2
+    assert (turns[1] - turns[0]) / 1000 == pytest.approx(seconds, rel=0.2)
 
 
 def test_a_figure_that_was_folded_away_fits_after_the_phone_was_turned(watched: Any, report: Path) -> None:

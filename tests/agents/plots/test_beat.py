@@ -1,13 +1,13 @@
 """The figure of the beating wing: the numbers of the film, few bytes, one scale, no name that acts."""
 
 import json
+import re
 
 import numpy as np
 import pytest
 
 import flapenv
 from agents.plots.beat import beat
-from agents.plots.style import figure_html
 from flapenv.animation.beat import drawn_beat
 
 HAWKMOTH = flapenv.load_insect("hawkmoth")
@@ -60,5 +60,23 @@ def test_the_first_frame_is_drawn() -> None:
 
 
 def test_a_label_is_text_and_not_markup() -> None:
-    text = figure_html(beat(HAWKMOTH, {"<script>alert(1)</script>": HAWKMOTH.stroke}, MODEL, frames=4), "beat")
+    text = beat(HAWKMOTH, {"<script>alert(1)</script>": HAWKMOTH.stroke}, MODEL, frames=4).to_json()
     assert "<script>alert" not in text
+
+
+def test_the_beat_is_the_model_s_and_counts_what_the_model_counts() -> None:
+    for model in (flapenv.HoverModel(profile_drag=0.5), flapenv.HoverModel(accounting="positive")):
+        frames = beat(HAWKMOTH, {"own": HAWKMOTH.stroke}, model).layout.meta["beat"]["frames"]
+        told = [frame["text"][3][0] for frame in frames]
+        lifts, powers = zip(*(re.findall(r"lift (\S+) weights, (\S+) W/kg", text)[0] for text in told), strict=True)
+        film = drawn_beat(HAWKMOTH, model=model, frames=48)
+        counted = film.history.paid_power(model.accounting)[film.rows] / HAWKMOTH.mass
+        assert [float(power) for power in powers] == pytest.approx(counted, abs=0.06)
+        assert np.mean(film.history.paid_power(model.accounting)) / HAWKMOTH.mass == pytest.approx(film.mean_power)
+        assert [float(lift) for lift in lifts] == pytest.approx(film.force[film.rows, 1], abs=0.006)
+
+
+def test_the_title_says_how_much_slower_the_wing_beats_than_in_life() -> None:
+    figure = beat(HAWKMOTH, {"own": HAWKMOTH.stroke}, MODEL)
+    slower = HAWKMOTH.stroke.frequency * figure.layout.meta["beat"]["seconds"]
+    assert figure.layout.annotations[0].text == f"<b>own</b>: 26.3 Hz, shown {slower:.0f}× slower"

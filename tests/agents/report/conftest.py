@@ -20,7 +20,7 @@ EVIL = "</script><script>alert(1)</script>"
 
 
 class Page(HTMLParser):
-    """A page taken apart: tags with their attributes, tables as texts, scripts."""
+    """A page taken apart: tags with their attributes, tables as texts, scripts, what can be unfolded."""
 
     def __init__(self, text: str) -> None:
         super().__init__(convert_charrefs=True)
@@ -28,6 +28,9 @@ class Page(HTMLParser):
         self.tables: dict[str, list[list[str]]] = {}
         self.scripts: list[tuple[dict[str, str | None], str]] = []
         self.text = ""
+        self.summaries: list[str] = []
+        self.blocks: list[str] = []
+        self._open = ""
         self._table: list[list[str]] | None = None
         self._cell: io.StringIO | None = None
         self._script: tuple[dict[str, str | None], list[str]] | None = None
@@ -36,6 +39,9 @@ class Page(HTMLParser):
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         attributes = dict(attrs)
         self.tags.append((tag, attributes))
+        if tag in ("summary", "pre"):
+            (self.summaries if tag == "summary" else self.blocks).append("")
+            self._open = tag
         if tag == "table":
             self._table = self.tables.setdefault(str(attributes.get("id")), [])
         elif tag == "tr" and self._table is not None:
@@ -46,6 +52,8 @@ class Page(HTMLParser):
             self._script = (attributes, [])
 
     def handle_endtag(self, tag: str) -> None:
+        if tag == self._open:
+            self._open = ""
         if tag in ("td", "th") and self._cell is not None and self._table is not None:
             self._table[-1].append(self._cell.getvalue().strip())
             self._cell = None
@@ -60,6 +68,8 @@ class Page(HTMLParser):
             self._script[1].append(data)
             return
         self.text += data
+        if self._open:
+            (self.summaries if self._open == "summary" else self.blocks)[-1] += data
         if self._cell is not None:
             self._cell.write(data)
 

@@ -1,7 +1,11 @@
 """Reports beside the results of runs and evaluations."""
 
 import json
+import os
+import platform
+import shutil
 from collections.abc import Callable
+from importlib import metadata
 from pathlib import Path
 from typing import Any
 
@@ -52,6 +56,48 @@ def test_an_evaluation_of_a_run_says_the_same_and_shows_its_learning_curve(
     facts = dict(evaluated.tables["None"])
     assert facts["sha256"] == load_policy(run)[1].sha256
     assert facts["trained by"].endswith("--seed 7")
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda text: text.replace("mean_gap", "gap", 1), "has no column mean_gap"),
+        (lambda text: text + "1,2\n", "has 2 cells; allowed: "),
+        (lambda text: text + text.splitlines()[1].replace(text.splitlines()[1].split(",")[0], "soon", 1), "'soon'"),
+        (lambda text: "", "is not a learning curve"),
+        (lambda text: text + "\xff", "is not a learning curve"),
+    ],
+)
+def test_a_damaged_learning_curve_costs_the_curve_and_not_the_report(
+    change: Callable[[str], str],
+    said: str,
+    run: Path,
+    tmp_path: Path,
+    page_of: Take,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    damaged = tmp_path / "damaged"
+    shutil.copytree(run, damaged)
+    text = (damaged / "curve.csv").read_text(encoding="utf-8")
+    (damaged / "curve.csv").write_text(change(text), encoding="latin-1")
+    assert train.main(["evaluate", str(damaged), "--out", str(tmp_path / "out")]) == 0
+    told = capsys.readouterr().err
+    assert f"The learning curve is left out: {damaged / 'curve.csv'}" in told
+    assert said in told
+    assert told.count("\n") == 1
+    page = page_of(read(tmp_path / "out" / "damaged")[0])
+    assert "The learning curve is left out" in page.text
+    assert page.tables["results"]
+    assert not [a for _, a in page.tags if a.get("id") == "learning-curve"]
+
+
+def test_the_machine_is_told_as_far_as_a_result_may_hang_on_it(run: Path, page_of: Take) -> None:
+    facts = dict(page_of(read(run)[0]).tables["None"])
+    assert f"plotly {metadata.version('plotly')}" in facts["versions"]
+    assert platform.system() in facts["system"]
+    assert platform.machine() in facts["system"]
+    assert f"OMP_NUM_THREADS {os.environ.get('OMP_NUM_THREADS', 'not set')}" in facts["machine"]
+    assert facts["machine"].startswith(f"{os.cpu_count()} cores")
 
 
 def test_a_published_stroke_gets_a_report_too(tmp_path: Path, page_of: Take) -> None:

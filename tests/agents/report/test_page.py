@@ -78,12 +78,18 @@ def test_names_that_somebody_chose_stay_text(content_of: Make, page_of: Callable
         called=evil,
     )
     page = page_of(report_page(content))
-    tame = page_of(report_page(content_of("hawkmoth", told=["x"])))
+    tame = page_of(report_page(content_of("hawkmoth", renamed="robot", told=["x"])))
     assert [tag for tag, _ in page.tags] == [tag for tag, _ in tame.tags]
     assert len(page.scripts) == len(tame.scripts)
     assert page.tables["results"][1][0] == evil
     assert evil in page.text
     assert page.data("savings-data")["data"][0]["y"] == ["&lt;/script&gt;&lt;script&gt;alert(1)&lt;/script&gt;"]
+
+
+def test_a_name_that_is_written_from_right_to_left_turns_nothing_else_around(content_of: Make) -> None:
+    html = report_page(content_of("hawkmoth", renamed="\u05e2\u05e9", title="\u05e2\u05e9"))
+    for element in ("<h1><bdi>", '<th scope="row"><bdi>', '<bdi class="name">'):
+        assert f"{element}\u05e2\u05e9</bdi>" in html
 
 
 def test_json_within_a_script_element_cannot_close_it() -> None:
