@@ -1,6 +1,5 @@
 """Insects in problems, solved once: what the sliders need without solving anything."""
 
-import dataclasses
 import json
 import threading
 import warnings
@@ -15,12 +14,9 @@ from agents.policy_file import load_policy
 from flapenv.aero.checks import require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
-from flapenv.assessment import StrokeAssessment, assess, outside_validated
-from flapenv.assessment.hovering import hovering_power
-from flapenv.assessment.validity import outside_box
+from flapenv.assessment import StrokeAssessment, assess, assess_another
 from flapenv.files import WingFile
 from flapenv.insects import INSECTS, Insect, load_insect
-from flapenv.performance import evaluate
 from flapenv.problem import PROBLEMS, HoverProblem
 
 EXPLORED = ("free-frequency", "fixed-frequency", "profile-drag")
@@ -53,19 +49,7 @@ class Case:
 
     def judged(self, stroke: Stroke) -> StrokeAssessment:
         """A stroke judged as `assess` does it, without the other models; solves nothing."""
-        model = self.problem.model
-        found = evaluate(self.insect, stroke, **vars(model))
-        return dataclasses.replace(
-            self.own,
-            stroke=stroke,
-            weight_support=found.weight_support,
-            specific_power=found.specific_power,
-            gap=self.own.best.gap(found.weight_support, found.specific_power),
-            hovering_power=hovering_power(self.insect, stroke, model),
-            outside=outside_validated(self.insect, stroke, air_density=model.air_density),
-            beyond_box=outside_box(self.insect, stroke, self.problem.box),
-            rankings=(),
-        )
+        return assess_another(self.own, stroke)
 
     @property
     def explored(self) -> str:

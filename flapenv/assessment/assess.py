@@ -1,5 +1,6 @@
 """A stroke of an insect beside everything that is known: optimum, bound, own stroke, CFD, other models."""
 
+import dataclasses
 import math
 import warnings
 from typing import Any
@@ -183,11 +184,36 @@ def assess(
     Source: Nabawy & Crowther (2014), Part II, section 3.3 and Table 3.
     """
     insect, problem = as_insect(insect), as_problem(problem)
-    stroke, model = insect.stroke if stroke is None else stroke, problem.model
-    best = optimum(insect, problem)
+    stroke = insect.stroke if stroke is None else stroke
+    best, errors = optimum(insect, problem), model_errors(insect, problem.model)
+    here = _assessed(insect, stroke, problem, best, errors)
+    return dataclasses.replace(here, rankings=rankings(insect, stroke, problem.model))
+
+
+def assess_another(known: StrokeAssessment, stroke: Stroke) -> StrokeAssessment:
+    """Judge another stroke of an insect that was assessed: nothing is solved again, and no other model is asked.
+
+    Args:
+        known: any assessment of the insect in the problem.
+        stroke: one stroke, scalar fields.
+
+    Raises:
+        ValueError: for what `evaluate` refuses.
+    """
+    return _assessed(known.insect, stroke, known.problem, known.best, known.errors)
+
+
+def _assessed(
+    insect: Insect,
+    stroke: Stroke,
+    problem: HoverProblem,
+    best: Optimum,
+    errors: ModelErrors,
+) -> StrokeAssessment:
+    """The stroke with all that is known of its insect, without other models."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=BEYOND_THEORY)  # `optimum` has said so
-        here = ranked("", insect, stroke, model)
+        here = ranked("", insect, stroke, problem.model)
     if not all(map(math.isfinite, (here.weight_support, here.specific_power))):
         raise ValueError(
             f"{insect.name}: Λ = {here.weight_support:.3g}, P* = {here.specific_power:.3g} W/kg of {stroke} are not "
@@ -205,10 +231,10 @@ def assess(
         own_specific_power=here.own_specific_power,
         hovering_power=here.hovering_power,
         own_hovering_power=here.own_hovering_power,
-        errors=model_errors(insect, model),
-        outside=outside_validated(insect, stroke, air_density=model.air_density),
+        errors=errors,
+        outside=outside_validated(insect, stroke, air_density=problem.model.air_density),
         beyond_box=outside_box(insect, stroke, problem.box),
-        rankings=rankings(insect, stroke, model),
+        rankings=(),
     )
 
 

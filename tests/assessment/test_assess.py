@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flapenv import INSECTS, HoverProblem, HoverReference, Insect, Stroke, Wing, evaluate, load_insect, optimum
-from flapenv.assessment import assess, outside_validated
+from flapenv.assessment import assess, assess_another, outside_validated
 from flapenv.assessment.hovering import hovering_power
 from flapenv.assessment.model_errors import model_errors
 from flapenv.model import HoverModel
@@ -205,3 +205,10 @@ def test_every_number_of_an_entry_is_what_its_key_says() -> None:
 def test_what_is_not_finite_is_refused(hawkmoth: Insect) -> None:
     with np.errstate(over="ignore"), pytest.raises(ValueError, match=r"hawkmoth: Λ = .* are not finite"):
         assess(hawkmoth, dataclasses.replace(hawkmoth.stroke, frequency=1e150))
+
+
+def test_another_stroke_is_judged_as_afresh_but_for_other_models(insect: Insect) -> None:
+    stroke = dataclasses.replace(insect.stroke, flap_amplitude=1.2, pitch_shape=3.0)
+    for problem in ("free-frequency", "profile-drag"):
+        afresh = assess(insect, stroke, problem)
+        assert assess_another(assess(insect, problem=problem), stroke) == dataclasses.replace(afresh, rankings=())
