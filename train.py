@@ -4,7 +4,7 @@ import sys
 import warnings
 from importlib import import_module
 
-from flapenv.aero.checks import allowed
+from flapenv.aero.checks import allowed, shown
 
 COMMANDS = {
     "benchmark": "agents.benchmark.command",
@@ -23,7 +23,7 @@ def main(arguments: list[str] | None = None) -> int:
     if arguments and not arguments[0].startswith("-"):
         name, *rest = arguments
         if name not in COMMANDS:
-            print(f"train.py: command {name!r} is unknown; {allowed(name, COMMANDS)}", file=sys.stderr)
+            print(f"train.py: command {shown(name)} is unknown; {allowed(name, COMMANDS)}", file=sys.stderr)
             return 2
     try:
         with warnings.catch_warnings():

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from agents.predictor import begin
-from flapenv.aero.checks import record, require_count
+from flapenv.aero.checks import record, require_count, shown
 from flapenv.envs.heave import HeaveVectorEnv
 
 Policy = Callable[[np.ndarray], np.ndarray]
@@ -90,7 +90,7 @@ def fly(
     """
     require_count("episodes", episodes)
     if "infos" in arguments:
-        raise TypeError(f"infos = {arguments['infos']!r} is not an argument here; allowed: leave it out")
+        raise TypeError(f"infos = {shown(arguments['infos'])} is not an argument here; allowed: leave it out")
     env = HeaveVectorEnv(episodes, infos=["power_excess", "height_ratio", "reward/end"], **arguments)
     observations, _ = env.reset(seed=seed, options=options)
     begin(policy)

@@ -10,7 +10,7 @@ from gymnasium.vector import VectorEnv
 
 from agents.actor import ACTIVATIONS, SQUASHES
 from agents.recurrent_actor import AnyActor
-from flapenv.aero.checks import record, require_count, require_name, require_scalar
+from flapenv.aero.checks import record, require_count, require_name, require_scalar, shown
 from flapenv.envs.registration import ENV_IDS
 
 FORMAT = 1
@@ -79,7 +79,7 @@ class PolicyCard:
             require_count(field, getattr(self, field), low=0)
         for field in ("algorithm", "preset", "command", "sha256"):
             if not isinstance(getattr(self, field), str):
-                raise TypeError(f"{field} = {getattr(self, field)!r} is not allowed; allowed: a text")
+                raise TypeError(f"{field} = {shown(getattr(self, field))} is not allowed; allowed: a text")
         for field in ("task", "result", "versions"):
             object.__setattr__(self, field, _plain(field, getattr(self, field)))
         object.__setattr__(self, "widths", _checked_widths(self.widths))
@@ -113,7 +113,9 @@ class PolicyCard:
         if "format" not in content:
             raise ValueError(f"format is missing; allowed: {FORMAT}")
         if content["format"] != FORMAT:
-            raise ValueError(f"format = {content['format']!r} is unknown; allowed: {FORMAT}, which this version reads")
+            raise ValueError(
+                f"format = {shown(content['format'])} is unknown; allowed: {FORMAT}, which this version reads"
+            )
         return cls(**content)
 
     def require_actor(self, actor: AnyActor) -> None:
@@ -125,7 +127,9 @@ class PolicyCard:
         for field in NETWORK:
             said, found = getattr(self, field), getattr(actor, field)
             if said != found:
-                raise ValueError(f"{field} = {said!r} of the card is not allowed; allowed: {found!r}, the network's")
+                raise ValueError(
+                    f"{field} = {shown(said)} of the card is not allowed; allowed: {found!r}, the network's"
+                )
 
     def require_fit(self, env: gym.Env | VectorEnv) -> None:
         """Refuse an environment whose spaces are not those the policy was trained in.
@@ -151,33 +155,33 @@ class PolicyCard:
 def _checked_widths(widths: Any) -> tuple[int, ...]:
     """Neurons of each hidden layer, from a list or a tuple."""
     if not isinstance(widths, list | tuple):
-        raise TypeError(f"widths = {widths!r} are not allowed; allowed: a list of whole numbers")
+        raise TypeError(f"widths = {shown(widths)} are not allowed; allowed: a list of whole numbers")
     return tuple(require_count(f"widths[{number}]", width) for number, width in enumerate(widths))
 
 
 def _require_digest(sha256: str) -> None:
     """Refuse what is no sha256, unless it is empty."""
     if sha256 and (len(sha256) != DIGEST_LENGTH or set(sha256) - set("0123456789abcdef")):
-        raise ValueError(f"sha256 = {sha256!r} is not allowed; allowed: {DIGEST_LENGTH} hexadecimal digits")
+        raise ValueError(f"sha256 = {shown(sha256)} is not allowed; allowed: {DIGEST_LENGTH} hexadecimal digits")
 
 
 def _require_result(result: Mapping[str, Any]) -> None:
     """Refuse a result without its two numbers, or with anything but plain values."""
     for name in ("mean", "worst"):
         if name not in result:
-            raise ValueError(f"result has no {name!r}; allowed: a mapping with 'mean' and 'worst'")
+            raise ValueError(f"result has no {shown(name)}; allowed: a mapping with 'mean' and 'worst'")
     for name, value in result.items():
         if not isinstance(value, str | None):
-            require_scalar(f"result[{name!r}]", value)
+            require_scalar(f"result[{shown(name)}]", value)
 
 
 def _plain(field: str, value: Any) -> dict[str, Any]:
     """A copy as JSON keeps it, which nobody can change behind the check."""
     if not isinstance(value, Mapping) or not all(isinstance(key, str) for key in value):
-        raise TypeError(f"{field} = {value!r} is not allowed; allowed: a mapping of texts to what JSON can hold")
+        raise TypeError(f"{field} = {shown(value)} is not allowed; allowed: a mapping of texts to what JSON can hold")
     try:
         copy = json.loads(json.dumps(value, allow_nan=False))
     except (TypeError, ValueError) as problem:
-        raise ValueError(f"{field} = {value!r} cannot be written as JSON: {problem}") from None
+        raise ValueError(f"{field} = {shown(value)} cannot be written as JSON: {problem}") from None
     assert isinstance(copy, dict)
     return copy

@@ -13,7 +13,7 @@ from agents.actor import Actor
 from agents.policy_card import PolicyCard
 from agents.recurrent_actor import AnyActor, RecurrentActor
 from agents.run_folder import POLICY_TENSORS, write_atomically
-from flapenv.aero.checks import allowed
+from flapenv.aero.checks import allowed, one_line, shown
 from flapenv.read_json import read_object
 from flapenv.whole_file import write_json
 
@@ -81,9 +81,11 @@ def load_policy(policy: str | os.PathLike[str]) -> tuple[AnyActor, PolicyCard]:
     try:
         actor = kind.from_tensors(load_tensors(content), activation=card.activation, squash=card.squash)
     except SafetensorError as problem:
-        raise ValueError(f"{path} holds no safetensors: {problem}; allowed: what `save_policy` wrote") from None
+        raise ValueError(
+            f"{path} holds no safetensors: {one_line(problem)}; allowed: what `save_policy` wrote"
+        ) from None
     except (TypeError, ValueError, KeyError) as problem:  # KeyError: a dtype that NumPy does not have
-        raise ValueError(f"{path}: {problem}") from None
+        raise ValueError(f"{path}: {one_line(problem)}") from None
     try:
         card.require_actor(actor)
     except ValueError as problem:
@@ -113,7 +115,7 @@ def find_policy(policy: str | os.PathLike[str]) -> Path:
     choice = allowed(name, [*shipped, "a run's folder", "NAME.safetensors"])
     if path.suffix or path.name != name:
         raise FileNotFoundError(f"{path} does not exist; {choice}")
-    raise ValueError(f"policy = {name!r} is unknown; {choice}")
+    raise ValueError(f"policy = {shown(name)} is unknown; {choice}")
 
 
 def _require_ending(path: Path) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from agents.presets import DEFAULT_PRESET, PRESETS, as_preset
 from agents.tasks.task import Verdict
-from flapenv.aero.checks import record, require_count
+from flapenv.aero.checks import record, require_count, shown
 
 LAST_SEED = 2**32 - 1
 """The largest seed that NumPy's and torch's global generators both take."""
@@ -34,12 +34,14 @@ class TrainingConfig:
             raise ValueError(f"seed = {self.seed} is not allowed; allowed: whole numbers from 0 to {LAST_SEED}")
         for field in ("name", "command"):
             if not isinstance(getattr(self, field), str):
-                raise TypeError(f"{field} = {getattr(self, field)!r} is not allowed; allowed: a text")
+                raise TypeError(f"{field} = {shown(getattr(self, field))} is not allowed; allowed: a text")
         preset = as_preset(self.preset)
         own = self.preset if isinstance(self.preset, str) else f"{preset.task}-{preset.settings.algorithm.lower()}"
         name = self.name or own
         if not re.fullmatch(r"\w[\w.-]{0,99}", name):
-            raise ValueError(f"name = {name!r} is not allowed; allowed: letters, digits, '_', '-' and '.', 100 at most")
+            raise ValueError(
+                f"name = {shown(name)} is not allowed; allowed: letters, digits, '_', '-' and '.', 100 at most"
+            )
         object.__setattr__(self, "name", name)
         if not self.command and PRESETS.get(name) == preset:
             object.__setattr__(self, "command", f"python train.py --preset {name} --seed {self.seed}")

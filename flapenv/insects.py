@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero.arrays import Real
-from flapenv.aero.checks import record, require_name, require_real, require_scalar
+from flapenv.aero.checks import HUGEST, TINIEST, record, require_name, require_real, require_scalar, shown
 from flapenv.aero.parameters import StrokeReference
 from flapenv.aero.planform import FunctionPlanform
 from flapenv.aero.stroke import Stroke
@@ -32,10 +32,10 @@ class HoverReference:
 
     def __post_init__(self) -> None:
         """Check both."""
-        support = require_scalar("weight_support", self.weight_support, 0.0, open_low=True)
+        support = require_scalar("weight_support", self.weight_support, TINIEST, HUGEST)
         object.__setattr__(self, "weight_support", support)
         if self.specific_power is not None:
-            power = require_scalar("specific_power", self.specific_power, 0.0, open_low=True, unit="W/kg")
+            power = require_scalar("specific_power", self.specific_power, TINIEST, HUGEST, unit="W/kg")
             object.__setattr__(self, "specific_power", power)
 
 
@@ -57,9 +57,9 @@ class WingFactors:
     def __post_init__(self) -> None:
         """Check all, and fill in the product."""
         for name in ("k_ind", "k_tip"):
-            object.__setattr__(self, name, require_real(name, getattr(self, name), 1.0))
+            object.__setattr__(self, name, require_real(name, getattr(self, name), 1.0, HUGEST))
         product = self.k_ind * self.k_tip if self.k_revolving is None else self.k_revolving
-        object.__setattr__(self, "k_revolving", require_real("k_revolving", product, 1.0))
+        object.__setattr__(self, "k_revolving", require_real("k_revolving", product, 1.0, HUGEST))
 
 
 @record
@@ -78,10 +78,10 @@ class ForceConstants:
 
     def __post_init__(self) -> None:
         """Check all."""
-        lift = require_real("lift_constant", self.lift_constant, 0.0, open_low=True)
+        lift = require_real("lift_constant", self.lift_constant, TINIEST, HUGEST)
         object.__setattr__(self, "lift_constant", lift)
         for name in ("zero_drag", "normal_drag"):
-            object.__setattr__(self, name, require_real(name, getattr(self, name), 0.0))
+            object.__setattr__(self, name, require_real(name, getattr(self, name), 0.0, HUGEST))
 
 
 @record
@@ -90,7 +90,7 @@ class Insect:
 
     Attributes:
         name: how it is called in tables and files.
-        mass: m of the whole body [kg], > 0.
+        mass: m of the whole body [kg].
         wing: one wing of the pair.
         stroke: its own stroke, which sets the reference frequency of boxes and the stroke k_tip is computed at.
         k_table: tabulated k_ind and k_tip; computed from the wing where None.
@@ -101,7 +101,7 @@ class Insect:
 
     Raises:
         TypeError: for an unknown or missing field or one of another kind.
-        ValueError: for a mass that is not finite and positive.
+        ValueError: for a mass that is not finite and positive, or beyond any flyer's.
     """
 
     name: str
@@ -117,8 +117,8 @@ class Insect:
     def __post_init__(self) -> None:
         """Check every field; parts may come as plain dicts, as from JSON."""
         if not isinstance(self.name, str) or not self.name:
-            raise TypeError(f"name = {self.name!r} is not allowed; allowed: a non-empty string")
-        object.__setattr__(self, "mass", require_real("mass", self.mass, 0.0, open_low=True, unit="kg"))
+            raise TypeError(f"name = {shown(self.name)} is not allowed; allowed: a non-empty string")
+        object.__setattr__(self, "mass", require_real("mass", self.mass, TINIEST, HUGEST, unit="kg"))
         _part(self, "wing", Wing)
         _part(self, "stroke", Stroke)
         _part(self, "k_table", WingFactors, optional=True)
@@ -152,7 +152,7 @@ def _part(insect: Insect, field: str, kind: type, *, optional: bool = False) -> 
         value = kind(**value)
         object.__setattr__(insect, field, value)
     if not (isinstance(value, kind) or (optional and value is None)):
-        raise TypeError(f"{field} = {value!r} is not allowed; allowed: a {kind.__name__} or a dict of its fields")
+        raise TypeError(f"{field} = {shown(value)} is not allowed; allowed: a {kind.__name__} or a dict of its fields")
 
 
 def read_table(name: str) -> dict[str, dict[str, str]]:
@@ -241,7 +241,7 @@ def as_insect(value: Any) -> Insect:
         return Insect(**value)
     if isinstance(value, Insect):
         return value
-    raise TypeError(f"insect = {value!r} is not allowed; allowed: an Insect, a dict of its fields or a name")
+    raise TypeError(f"insect = {shown(value)} is not allowed; allowed: an Insect, a dict of its fields or a name")
 
 
 def described(insect: Insect) -> str | dict[str, Any]:

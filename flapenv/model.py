@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_numpy
-from flapenv.aero.checks import record, require_flag, require_name, require_scalar
+from flapenv.aero.checks import HUGEST, TINIEST, record, require_flag, require_name, require_scalar, shown
 from flapenv.aero.coefficients import SECTION_LIFT_SLOPE, checked_coefficients
 from flapenv.aero.history import ACCOUNTING
 from flapenv.aero.wing import EDGE_OUTLINES
@@ -66,9 +66,9 @@ class HoverModel:
     def __post_init__(self) -> None:
         """Check every option."""
         for name, unit in (("air_density", "kg/m³"), ("gravity", "m/s²"), ("section_lift_slope", "1/rad")):
-            value = require_scalar(name, getattr(self, name), 0.0, open_low=True, unit=unit)
+            value = require_scalar(name, getattr(self, name), TINIEST, HUGEST, unit=unit)
             object.__setattr__(self, name, value)
-        object.__setattr__(self, "profile_drag", require_scalar("profile_drag", self.profile_drag, 0.0))
+        object.__setattr__(self, "profile_drag", require_scalar("profile_drag", self.profile_drag, 0.0, HUGEST))
         require_name("tip_loss", self.tip_loss, ("reference", "stroke"))
         require_name("edge_correction", self.edge_correction, EDGE_OUTLINES)
         require_name("accounting", self.accounting, ACCOUNTING)
@@ -78,7 +78,7 @@ class HoverModel:
         else:
             checked_coefficients(self.coefficients)
             if not isinstance(self.coefficients, Hashable):
-                raise TypeError(f"coefficients = {self.coefficients!r} cannot be hashed; allowed: a function")
+                raise TypeError(f"coefficients = {shown(self.coefficients)} cannot be hashed; allowed: a function")
 
     @property
     def uses_k(self) -> bool:
@@ -116,7 +116,7 @@ def as_model(value: Any) -> HoverModel:
         return HoverModel(**(value or {}))
     if isinstance(value, HoverModel):
         return value
-    raise TypeError(f"model = {value!r} is not allowed; allowed: a HoverModel or a dict of its options")
+    raise TypeError(f"model = {shown(value)} is not allowed; allowed: a HoverModel or a dict of its options")
 
 
 def warn_of_aspect_ratio(name: str, aspect_ratio: Real, model: HoverModel, *, stacklevel: int) -> None:

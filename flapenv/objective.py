@@ -8,7 +8,7 @@ import numpy as np
 
 from flapenv.aero.accelerators import Accelerator, plate_kernel
 from flapenv.aero.arrays import as_arrays, as_like
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, shown
 from flapenv.case import HoverCase
 from flapenv.insects import Insect
 from flapenv.optimum import gap_charge
@@ -145,12 +145,14 @@ class HoverObjective:
     def _require_use(self, accelerator: str) -> None:
         """Refuse an accelerator that would change the precision or nothing at all."""
         if self.dtype.itemsize > 4:
-            raise ValueError(f"accelerator = {accelerator!r} computes in single precision; allowed: dtype 'float32'")
+            raise ValueError(
+                f"accelerator = {shown(accelerator)} computes in single precision; allowed: dtype 'float32'"
+            )
         model = self.problem.model
         if not model.is_plate or model.profile_drag or model.accounting == "positive":
             raise ValueError(
-                f"accelerator = {accelerator!r} knows 'lifting-line' and 'extended-lifting-line' coefficients "
-                f"without profile drag and with elastic power; allowed for problem {self.problem.name!r}: 'numpy'"
+                f"accelerator = {shown(accelerator)} knows 'lifting-line' and 'extended-lifting-line' coefficients "
+                f"without profile drag and with elastic power; allowed for problem {shown(self.problem.name)}: 'numpy'"
             )
 
     @property

@@ -10,7 +10,7 @@ import numpy as np
 from flapenv.aero import induced
 from flapenv.aero.accelerators import PlateKernel
 from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result, is_tensor
-from flapenv.aero.checks import record, require_count
+from flapenv.aero.checks import record, require_count, shown
 from flapenv.aero.paid_power import positive_power
 from flapenv.aero.plate_averages import plate_averages
 from flapenv.aero.stroke import Stroke
@@ -181,7 +181,7 @@ def checked(insect: Insect | str, stroke: Stroke | None, model: dict[str, Any]) 
     insect, options = as_insect(insect), HoverModel(**model)
     stroke = insect.stroke if stroke is None else stroke
     if not isinstance(stroke, Stroke):
-        raise TypeError(f"stroke = {stroke!r} is not allowed; allowed: a Stroke, or None for the insect's own")
+        raise TypeError(f"stroke = {shown(stroke)} is not allowed; allowed: a Stroke, or None for the insect's own")
     if options.accounting == "positive" and np.any(as_numpy(stroke.flap_shape) == 1):
         raise ValueError(
             "flap_shape = 1 is not allowed with accounting = 'positive': a triangle's acceleration is infinite at its "

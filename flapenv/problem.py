@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flapenv.aero.arrays import Real
-from flapenv.aero.checks import record, require_name, require_scalar
+from flapenv.aero.checks import HUGEST, TINIEST, record, require_name, require_scalar, shown
 from flapenv.aero.parameters import STROKE_PARAMETERS, StrokeReference
 from flapenv.aero.wingbeat import TimeRule, time_rule
 from flapenv.model import COEFFICIENTS, HoverModel
@@ -56,7 +56,8 @@ class StrokeBox:
                 object.__setattr__(self, default, STROKE_PARAMETERS[name].box)
             elif getattr(self, name) is not None and getattr(self, ratio) is not None:
                 raise ValueError(
-                    f"{name} = {getattr(self, name)} and {ratio} = {getattr(self, ratio)} both bound the {name}; "
+                    f"{name} = {shown(getattr(self, name))} and {ratio} = {shown(getattr(self, ratio))} both bound the "
+                    f"{name}; "
                     "allowed: one of them"
                 )
         for field, value in vars(self).copy().items():
@@ -99,8 +100,8 @@ def _interval(field: str, value: Any) -> Interval:
     """A checked (lower, upper) from a pair or a single number."""
     name = field.removesuffix("_ratio")
     ends = tuple(value) if isinstance(value, list | tuple) or np.ndim(value) else (value, value)
-    if len(ends) != 2 or any(np.ndim(end) for end in ends):
-        raise TypeError(f"bounds of {field} = {value!r} are not allowed; allowed: (lower, upper) or one number")
+    if len(ends) != 2 or any(isinstance(end, list | tuple) or np.ndim(end) for end in ends):
+        raise TypeError(f"bounds of {field} = {shown(value)} are not allowed; allowed: (lower, upper) or one number")
     low, high = (
         float(np.asarray(STROKE_PARAMETERS[name].check(end, field=f"{which} bound of {field}")))
         for which, end in zip(("lower", "upper"), ends, strict=True)
@@ -139,19 +140,19 @@ class HoverProblem:
     def __post_init__(self) -> None:
         """Check every field; box and model may be dicts."""
         if self.name is not None and (not isinstance(self.name, str) or not self.name):
-            raise TypeError(f"name = {self.name!r} is not allowed; allowed: a non-empty string, or None")
+            raise TypeError(f"name = {shown(self.name)} is not allowed; allowed: a non-empty string, or None")
         for field, kind in (("box", StrokeBox), ("model", HoverModel)):
             value = getattr(self, field)
             if isinstance(value, Mapping):
                 object.__setattr__(self, field, kind(**value))
             elif not isinstance(value, kind):
-                raise TypeError(f"{field} = {value!r} is not allowed; allowed: a {kind.__name__} or a dict")
+                raise TypeError(f"{field} = {shown(value)} is not allowed; allowed: a {kind.__name__} or a dict")
         if isinstance(self.lift_penalty, str):
             require_name("lift_penalty", self.lift_penalty, ("auto",))
         else:
-            penalty = require_scalar("lift_penalty", self.lift_penalty, 0.0, open_low=True)
+            penalty = require_scalar("lift_penalty", self.lift_penalty, TINIEST, HUGEST)
             object.__setattr__(self, "lift_penalty", penalty)
-        floor = require_scalar("reward_floor", self.reward_floor, high=0.0, open_high=True)
+        floor = require_scalar("reward_floor", self.reward_floor, -HUGEST, -TINIEST)
         object.__setattr__(self, "reward_floor", floor)
         if self.box.flap_amplitude is not None:
             self._require_amplitude("upper bound of flap_amplitude", self.box.flap_amplitude[1])
@@ -203,7 +204,8 @@ class HoverProblem:
         """
         if callable(self.model.coefficients):
             raise TypeError(
-                f"coefficients = {self.model.coefficients!r} cannot be written to a file; allowed there: a name of "
+                f"coefficients = {shown(self.model.coefficients)} cannot be written to a file; "
+                "allowed there: a name of "
                 f"{', '.join(COEFFICIENTS)}"
             )
         return asdict(self)
@@ -251,4 +253,4 @@ def as_problem(value: Any) -> HoverProblem:
         return HoverProblem(**value)
     if isinstance(value, HoverProblem):
         return value
-    raise TypeError(f"problem = {value!r} is not allowed; allowed: a HoverProblem, a dict of its fields or a name")
+    raise TypeError(f"problem = {shown(value)} is not allowed; allowed: a HoverProblem, a dict of its fields or a name")

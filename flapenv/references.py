@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from flapenv.aero.checks import record, require_name
+from flapenv.aero.checks import record, require_name, shown
 from flapenv.case import HoverCase, hover_case, stack_cases
 from flapenv.insects import Insect, pick
 from flapenv.many_optima import GRID, many_optima
@@ -66,7 +66,7 @@ class Flyers:
         if isinstance(insects, Insect):
             if not problem.model.has_proven_bound:
                 raise ValueError(
-                    f"problem = {problem.name!r} proves no bound, and the wings of a pool would have to be solved "
+                    f"problem = {shown(problem.name)} proves no bound, and the wings of a pool would have to be solved "
                     "one by one; allowed: coefficients 'lifting-line' or 'extended-lifting-line', elastic power"
                 )
             self.cases = hover_case(insects, problem.model)

@@ -9,7 +9,7 @@ import numpy as np
 
 from flapenv.aero import induced
 from flapenv.aero.blade_element import STEPS, STRIPS, blade_element
-from flapenv.aero.checks import allowed, is_single
+from flapenv.aero.checks import allowed, is_single, shown
 from flapenv.aero.history import WingbeatHistory
 from flapenv.aero.motions import Motion
 from flapenv.aero.stroke import Stroke
@@ -52,12 +52,13 @@ def simulate(
     model = as_model(model)
     for name, value in options.items():
         if name not in OPTIONS:
-            raise TypeError(f"{name} = {value!r} is not an option of simulate; {allowed(name, OPTIONS)}")
+            raise TypeError(f"{name} = {shown(value)} is not an option of simulate; {allowed(name, OPTIONS)}")
     motion = insect.stroke if motion is None else motion
     missing = [name for name in MOTION_METHODS if not hasattr(motion, name)]
     if isinstance(motion, type) or missing:
         raise TypeError(
-            f"motion = {motion!r} is not allowed; allowed: a Stroke, SampledMotion, FourierMotion, or an object with "
+            f"motion = {shown(motion)} is not allowed; allowed: a Stroke, SampledMotion, FourierMotion, or an "
+            "object with "
             f"{', '.join(MOTION_METHODS)}"
         )
     if not (is_single(insect) and (not isinstance(motion, Stroke) or is_single(motion))):

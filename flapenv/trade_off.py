@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flapenv.aero.checks import record, require_name, require_real
+from flapenv.aero.checks import record, require_name, require_real, shown
 from flapenv.case import wing_factors
 from flapenv.drawing import BLUE, GREEN, GREY, ORANGE, RED, require_matplotlib, verbatim
 from flapenv.insects import INSECTS, Insect, as_insect
@@ -127,7 +127,7 @@ def _limited(problem: HoverProblem, varied: str, value: float) -> HoverProblem:
         model = dataclasses.replace(problem.model, gravity=problem.model.gravity * value)
         return dataclasses.replace(problem, name=None, model=model)
     if getattr(problem.box, varied) is None:
-        raise ValueError(f"varied = {varied!r} is not bounded by the box; allowed: what it bounds")
+        raise ValueError(f"varied = {shown(varied)} is not bounded by the box; allowed: what it bounds")
     low = getattr(problem.box, varied)[0]
     bounds: dict[str, Any] = {**vars(problem.box), varied: (min(low, value), value)}
     return dataclasses.replace(problem, name=None, box=StrokeBox(**bounds))

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from flapenv.aero import induced
-from flapenv.aero.checks import require_count, require_name, require_scalar
+from flapenv.aero.checks import require_count, require_name, require_scalar, shown
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.insects import Insect, WingFactors, as_insect
@@ -99,7 +99,7 @@ def _checked_pool(
         min_weight_support = require_scalar("min_weight_support", min_weight_support, 0.0, 3.0)
         asked = as_problem(problem)
         if not asked.model.has_proven_bound:
-            raise ValueError(f"problem = {asked.name!r} knows no largest weight support of many wings at once")
+            raise ValueError(f"problem = {shown(asked.name)} knows no largest weight support of many wings at once")
     unlike = None if leave_out is None else as_insect(leave_out)
     return _pool(size, seed, split, min_weight_support, asked, unlike)
 

@@ -55,7 +55,7 @@ def test_insects_are_hashable_pickle_and_come_back_from_dicts(insect: Insect) ->
 
 
 def test_replace_validates_again() -> None:
-    with pytest.raises(ValueError, match=r"mass = -1 is not allowed; allowed: finite, in \(0, inf\) kg"):
+    with pytest.raises(ValueError, match=r"mass = -1 is not allowed; allowed: finite, in \[1e-15, 1e\+15\] kg"):
         dataclasses.replace(OWN, mass=-1.0)
     with pytest.raises(TypeError, match="wing = 3"):
         dataclasses.replace(OWN, wing=3)
@@ -65,7 +65,7 @@ def test_replace_validates_again() -> None:
         dataclasses.replace(OWN, k_table={"k_ind": "a", "k_tip": 1.1})
     with pytest.raises(TypeError, match="weight_support = 'x'"):
         dataclasses.replace(OWN, cfd={"weight_support": "x"})
-    with pytest.raises(ValueError, match=r"k_ind = 0.9 .*\[1, inf\)"):
+    with pytest.raises(ValueError, match=r"k_ind = 0.9 .*\[1, 1e\+15\]"):
         dataclasses.replace(OWN, k_table={"k_ind": 0.9, "k_tip": 1.1})
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from agents.benchmark.statistics import first_below
 from agents.run_folder import CURVE, RESULTS, write_atomically
-from flapenv.aero.checks import record, require_scalar
+from flapenv.aero.checks import record, require_scalar, shown
 from flapenv.read_json import read_object
 
 RUNS_TABLE, INSECTS_TABLE, CURVES_TABLE = "runs.csv", "insects.csv", "curves.csv"
@@ -105,7 +105,7 @@ def _require_texts(row: object, *names: str) -> None:
     """Refuse fields that are not text."""
     for name in names:
         if not isinstance(getattr(row, name), str):
-            raise TypeError(f"{name} = {getattr(row, name)!r} is not allowed; allowed: a text")
+            raise TypeError(f"{name} = {shown(getattr(row, name))} is not allowed; allowed: a text")
 
 
 def _require_numbers(row: object, *names: str) -> None:

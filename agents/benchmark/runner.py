@@ -7,7 +7,7 @@ from pathlib import Path
 from agents.benchmark.run_queue import CommandOf, Outcome, train_all
 from agents.benchmark.training_run import Run, is_there, registered, run_command
 from agents.run_folder import RUNS
-from flapenv.aero.checks import record, require_count, require_name
+from flapenv.aero.checks import record, require_count, require_name, shown
 
 BENCHMARKED = (
     "hover-ppo",
@@ -46,7 +46,7 @@ class BenchmarkConfig:
     def __post_init__(self) -> None:
         """Check every field."""
         if isinstance(self.presets, str) or not isinstance(self.presets, Sequence) or not self.presets:
-            raise TypeError(f"presets = {self.presets!r} is not allowed; allowed: a list of at least one name")
+            raise TypeError(f"presets = {shown(self.presets)} is not allowed; allowed: a list of at least one name")
         for name in self.presets:
             require_name("presets", name, registered())
         twice = [name for name in dict.fromkeys(self.presets) if list(self.presets).count(name) > 1]

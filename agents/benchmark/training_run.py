@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.run_folder import CONFIG, RESULTS
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, shown
 from flapenv.read_json import read_object
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def cut_short(results: Path, budget: int) -> str | None:
     found = read_object(results)
     wingbeats = found.get("wingbeats")
     if isinstance(wingbeats, bool) or not isinstance(wingbeats, int):
-        raise ValueError(f"{results} is not a run's: wingbeats = {wingbeats!r}; allowed: a whole number")
+        raise ValueError(f"{results} is not a run's: wingbeats = {shown(wingbeats)}; allowed: a whole number")
     if found.get("interrupted", False) is not False:
         return f"was interrupted after {wingbeats:,} wingbeats"
     return f"ended after {wingbeats:,} of {budget:,} wingbeats" if wingbeats < budget else None

@@ -124,13 +124,16 @@ def _folders(subjects: list[str], out: Path | None) -> list[Path | None]:
         OSError: for a folder that cannot be used.
     """
     from agents.run_folder import require_free_folder
+    from flapenv.aero.checks import shown
 
     if out is None:
         return [None] * len(subjects)
     names = [_folder_name(subject) for subject in subjects]
     for name in names:
         if names.count(name) > 1:
-            raise ValueError(f"{names.count(name)} subjects are called {name!r}; allowed with --out: each name once")
+            raise ValueError(
+                f"{names.count(name)} subjects are called {shown(name)}; allowed with --out: each name once"
+            )
     for name in names:
         require_free_folder(out / name)
     return [out / name for name in names]

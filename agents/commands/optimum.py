@@ -67,6 +67,7 @@ def cases(options: argparse.Namespace) -> list[tuple["Insect", "HoverProblem"]]:
         OSError: for files that cannot be read.
     """
     from flapenv import INSECTS, load_insect
+    from flapenv.aero.checks import shown
     from flapenv.files import read_wing
     from flapenv.files.envelope import errors_of
     from flapenv.problem import as_problem
@@ -86,9 +87,9 @@ def cases(options: argparse.Namespace) -> list[tuple["Insect", "HoverProblem"]]:
     names = [insect.name for insect, _ in found]
     for insect, _ in found:
         if names.count(insect.name) > 1:
-            raise ValueError(f"{names.count(insect.name)} are called {insect.name!r}; allowed: each name once")
+            raise ValueError(f"{names.count(insect.name)} are called {shown(insect.name)}; allowed: each name once")
         if weighed and insect.wing.mass is None:
-            raise ValueError(f"problem = {base.name!r} needs wing masses, which {insect.name} lacks")
+            raise ValueError(f"problem = {shown(base.name)} needs wing masses, which {insect.name} lacks")
     return found
 
 

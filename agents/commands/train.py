@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from agents.commands.one_line_parser import OneLineParser, folder, said
-from flapenv.aero.checks import allowed
+from flapenv.aero.checks import allowed, shown
 
 CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "versions")
 """Of a config.json; `environment` and `versions` are told, not asked for."""
@@ -167,7 +167,7 @@ def own_wings(options: argparse.Namespace, preset: Any) -> dict[str, Any]:
     if options.insects is not None:
         raise ValueError("--insects and --wing both say what flies; allowed: one of them")
     if preset.task != "hover":
-        raise ValueError(f"--wing is not told of task {preset.task!r}; allowed: 'hover', see --list")
+        raise ValueError(f"--wing is not told of task {shown(preset.task)}; allowed: 'hover', see --list")
     base = as_problem(preset.arguments.get("problem") if options.problem is None else options.problem)
     files, problems = [read_wing(path) for path in options.wing], []
     for path, one in zip(options.wing, files, strict=True):
@@ -203,7 +203,7 @@ def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
     content = read_object(path, called=f"--config {path}", mend="a config.json as a run writes it")
     for key in content:
         if key not in CONFIG_KEYS:
-            raise TypeError(f"--config {path} has an unknown key {key!r}; {allowed(key, CONFIG_KEYS)}")
+            raise TypeError(f"--config {path} has an unknown key {shown(key)}; {allowed(key, CONFIG_KEYS)}")
     needed = ("task", "algorithm", "settings")
     missing = [key for key in needed if key not in content]
     if missing:
@@ -211,7 +211,7 @@ def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
     preset = {key: content[key] for key in needed}
     told = content.get("environment")
     if told is not None and told != (flies := as_preset(preset).make_task().environment):
-        raise ValueError(f"--config {path} has environment = {told!r}; allowed: {flies!r}, which its task flies")
+        raise ValueError(f"--config {path} has environment = {shown(told)}; allowed: {flies!r}, which its task flies")
     return content.get("preset", ""), content.get("seed", 0), preset
 
 

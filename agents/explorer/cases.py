@@ -11,7 +11,7 @@ from typing import Any
 from agents.evaluation.comparison import Comparison
 from agents.explorer.controls import OWN_WING, read_insect
 from agents.policy_file import load_policy
-from flapenv.aero.checks import require_name
+from flapenv.aero.checks import require_name, shown
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.aero.stroke import Stroke
 from flapenv.assessment import StrokeAssessment, assess, assess_another
@@ -87,7 +87,7 @@ class Cases:
         if extra is not None:
             name = extra.insect.name
             if name in (*INSECTS, OWN_WING):
-                raise ValueError(f"name = {name!r} is taken by one of the page's own; allowed: another name")
+                raise ValueError(f"name = {shown(name)} is taken by one of the page's own; allowed: another name")
             self.insects = {name: extra.insect, **self.insects}
         self._solved: OrderedDict[str, Case] = OrderedDict()
         self._lock = threading.Lock()

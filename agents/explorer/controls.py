@@ -122,7 +122,7 @@ def read_stroke(values: object, insect: Insect) -> Stroke:
     """
     controls = stroke_controls(insect)
     if not isinstance(values, Sequence) or isinstance(values, str) or len(values) != len(controls):
-        raise TypeError(f"stroke is not a list of {len(controls)} numbers")
+        raise TypeError(f"stroke = {shown(values)} is not allowed; allowed: a list of {len(controls)} numbers")
     number = {control.name: control.checked(value) for control, value in zip(controls, values, strict=True)}
     return Stroke(
         frequency=number["frequency"],
@@ -164,7 +164,7 @@ def read_insect(name: object, own: object, insects: Mapping[str, Insect]) -> Ins
     if require_name("insect", name, [*insects, OWN_WING]) != OWN_WING:
         return insects[str(name)]
     if not isinstance(own, Sequence) or isinstance(own, str) or len(own) != 1 + len(WING_CONTROLS):
-        raise TypeError(f"wing is not a name and {len(WING_CONTROLS)} numbers")
+        raise TypeError(f"wing = {shown(own)} is not allowed; allowed: a name and {len(WING_CONTROLS)} numbers")
     called, *values = own
     number = {control.name: control.checked(value) for control, value in zip(WING_CONTROLS, values, strict=True)}
     insect = Insect(
@@ -197,5 +197,5 @@ def _read_name(name: object) -> str:
     if not isinstance(name, str) or not name.strip() or len(name) > LONGEST_NAME or not name.isprintable():
         raise ValueError(f"name of the wing is not allowed; allowed: 1 to {LONGEST_NAME} printable characters")
     if name.strip() in INSECTS:
-        raise ValueError(f"name of the wing = {name.strip()!r} is taken by an insect; allowed: another name")
+        raise ValueError(f"name of the wing = {shown(name.strip())} is taken by an insect; allowed: another name")
     return name.strip()

@@ -12,7 +12,7 @@ from agents.presets.recurrent_ppo import RecurrentPPOSettings
 from agents.presets.sac import SACSettings
 from agents.presets.td3 import TD3Settings
 from agents.presets.tqc import TQCSettings
-from flapenv.aero.checks import allowed, require_name
+from flapenv.aero.checks import allowed, require_name, shown
 
 __all__ = [
     "ALGORITHMS",
@@ -53,17 +53,17 @@ def as_preset(preset: Any) -> Preset:
     if isinstance(preset, str):
         return PRESETS[require_name("preset", preset, PRESETS)]
     if not isinstance(preset, Mapping):
-        raise TypeError(f"preset = {preset!r} is not allowed; allowed: a name, a Preset or the dict of one")
+        raise TypeError(f"preset = {shown(preset)} is not allowed; allowed: a name, a Preset or the dict of one")
     for name in preset:
         if name not in DESCRIBED:
-            raise TypeError(f"a preset has no key {name!r}; {allowed(name, DESCRIBED)}")
+            raise TypeError(f"a preset has no key {shown(name)}; {allowed(name, DESCRIBED)}")
     for name in DESCRIBED:
         if name not in preset:
-            raise TypeError(f"a preset needs the key {name!r}; its keys are {', '.join(DESCRIBED)}")
+            raise TypeError(f"a preset needs the key {shown(name)}; its keys are {', '.join(DESCRIBED)}")
     task, settings = preset["task"], preset["settings"]
     for name, value in (("task", task), ("settings", settings)):
         if not isinstance(value, Mapping):
-            raise TypeError(f"{name} = {value!r} is not allowed; allowed: an object with the {name}'s keys")
+            raise TypeError(f"{name} = {shown(value)} is not allowed; allowed: an object with the {name}'s keys")
     kind = ALGORITHMS[require_name("algorithm", preset["algorithm"], ALGORITHMS)]
     arguments = {name: value for name, value in task.items() if name != "name"}
     return Preset(task=task.get("name", ""), arguments=arguments, settings=kind(**settings))

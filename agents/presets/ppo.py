@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.limits import require_an_update, require_counts
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_name, require_scalar
+from flapenv.aero.checks import record, require_name, require_scalar, shown
 
 if TYPE_CHECKING:
     from stable_baselines3 import PPO
@@ -95,7 +95,9 @@ class PPOSettings:
             require_scalar(name, getattr(self, name), 0.0, 1.0)
         if self.first_mean is not None:
             if not isinstance(self.first_mean, list | tuple):
-                raise TypeError(f"first_mean = {self.first_mean!r} is not allowed; allowed: a list of numbers, or none")
+                raise TypeError(
+                    f"first_mean = {shown(self.first_mean)} is not allowed; allowed: a list of numbers, or none"
+                )
             for number, value in enumerate(self.first_mean):
                 require_scalar(f"first_mean[{number}]", value, -1.0, 1.0)
             object.__setattr__(self, "first_mean", tuple(float(value) for value in self.first_mean))

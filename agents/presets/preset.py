@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from agents.tasks import TASKS, make_task
 from agents.tasks.task import Task
-from flapenv.aero.checks import allowed, record, require_name
+from flapenv.aero.checks import LONGEST_SHOWN, allowed, one_line, record, require_name, shown
 
 if TYPE_CHECKING:
     from stable_baselines3.common.base_class import BaseAlgorithm
@@ -56,7 +56,10 @@ class Preset:
         known = list(inspect.signature(TASKS[self.task]).parameters)
         for name, value in self.arguments.items():
             if name not in known:
-                raise TypeError(f"task {self.task!r} has no argument {name!r} (got {value!r}); {allowed(name, known)}")
+                raise TypeError(
+                    f"task {shown(self.task)} has no argument {shown(name)} (got {shown(value)}); "
+                    f"{allowed(name, known)}"
+                )
 
     def make_task(self) -> Task:
         """The task itself.
@@ -78,7 +81,7 @@ class Preset:
         for name, value in settings.items():
             if name not in known:
                 kind = self.settings.algorithm
-                raise TypeError(f"{kind} has no setting {name!r} (got {value!r}); {allowed(name, known)}")
+                raise TypeError(f"{kind} has no setting {shown(name)} (got {shown(value)}); {allowed(name, known)}")
         return Preset(
             task=self.task,
             arguments={**self.arguments, **arguments},
@@ -104,7 +107,7 @@ def setting_of(text: str) -> tuple[str, Any]:
     """
     name, equals, value = text.partition("=")
     if not (name and equals and value):
-        raise ValueError(f"--set {text} is not allowed; allowed: NAME=VALUE")
+        raise ValueError(f"--set {one_line(text, LONGEST_SHOWN)} is not allowed; allowed: NAME=VALUE")
     try:
         return name, json.loads(value)
     except (json.JSONDecodeError, RecursionError):

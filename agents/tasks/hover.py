@@ -9,7 +9,7 @@ from agents.evaluation.comparison import Comparison
 from agents.predictor import Predictor
 from agents.tasks.stroke_verdict import verdict_of
 from agents.tasks.task import Verdict
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, shown
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.insect_choice import listed_insects
 from flapenv.insects import described
@@ -41,7 +41,9 @@ class HoverTask:
         if self.problem.model.accounting == "positive":
             light = [insect.name for insect in self.insects if insect.wing.mass is None]
             if light:
-                raise ValueError(f"problem = {self.problem.name!r} needs wing masses, which {', '.join(light)} lack")
+                raise ValueError(
+                    f"problem = {shown(self.problem.name)} needs wing masses, which {', '.join(light)} lack"
+                )
 
     def vector_env(self, rows: int) -> HoverVectorEnv:
         """The environment to train in."""

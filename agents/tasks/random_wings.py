@@ -8,7 +8,7 @@ from agents.evaluation.comparison import Comparison
 from agents.predictor import Predictor
 from agents.tasks.task import Verdict
 from agents.tasks.wing_flights import WingFlights, WingPool
-from flapenv.aero.checks import record, require_count
+from flapenv.aero.checks import record, require_count, shown
 from flapenv.envs import HoverVectorEnv
 from flapenv.insects import INSECTS, as_insect, described, load_insect
 from flapenv.problem import as_problem
@@ -43,7 +43,9 @@ class RandomWingsTask:
         """Resolve the problem and the insect, which may be dicts as from config.json; check the rest."""
         object.__setattr__(self, "problem", as_problem(self.problem))
         if not self.problem.model.has_proven_bound:
-            raise ValueError(f"problem = {self.problem.name!r} proves no bound; allowed: problems with a proven bound")
+            raise ValueError(
+                f"problem = {shown(self.problem.name)} proves no bound; allowed: problems with a proven bound"
+            )
         object.__setattr__(self, "pool_size", require_count("pool_size", self.pool_size))
         object.__setattr__(self, "pool_seed", require_count("pool_seed", self.pool_seed, low=0))
         if self.leave_out is not None:

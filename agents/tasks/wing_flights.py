@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 
 from agents.predictor import Predictor, begin
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, shown
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.insect_choice import choose_pool
 from flapenv.many_optima import many_optima
@@ -96,7 +96,7 @@ class WingPool:
             self.best = many_optima(choose_pool(problem, size=size, seed=seed, split=split, leave_out=None), problem)
         if not np.any(self.best.feasible):
             raise ValueError(
-                f"problem = {problem.name!r} lets none of {size} {split} wings hover; allowed: wider bounds"
+                f"problem = {shown(problem.name)} lets none of {size} {split} wings hover; allowed: wider bounds"
             )
 
     def fly(self, policy: Predictor) -> WingFlights:

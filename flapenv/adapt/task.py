@@ -7,7 +7,7 @@ import numpy as np
 
 from flapenv.adapt.conditions import DENSITY_RATIO, NOMINAL, PAYLOAD, SPAN_LOST, Condition, ConditionTable
 from flapenv.adapt.ladder import BOX, lift_ladder
-from flapenv.aero.checks import record
+from flapenv.aero.checks import record, shown
 from flapenv.case import HoverCase, lift_constant
 from flapenv.insects import Insect
 from flapenv.model import warn_of_aspect_ratio
@@ -119,8 +119,8 @@ class AdaptTask:
         for insect, lift in zip(self.insects, largest * ladder.largest_lift, strict=True):
             if lift < 1:
                 raise ValueError(
-                    f"insect {insect.name!r} is not allowed: its largest weight support in problem A is {lift:.3f}; "
-                    "allowed: insects that can hover there"
+                    f"insect {shown(insect.name)} is not allowed: its largest weight support in problem A is "
+                    f"{lift:.3f}; allowed: insects that can hover there"
                 )
         return np.clip(high / np.sqrt(largest * ladder.lift[0]), low, high)
 

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flapenv.aero.axes import LEFT, RIGHT, flapping_directions, to_stroke_plane
-from flapenv.aero.checks import require_count, require_name, require_real, require_scalar
+from flapenv.aero.checks import require_count, require_name, require_real, require_scalar, shown
 from flapenv.aero.force_laws import ForceLaw
 from flapenv.aero.history import TermHistory, WingbeatHistory
 from flapenv.aero.inertia import wing_inertia
@@ -141,7 +141,7 @@ def blade_element(
     require_count("steps", steps)
     require_name("spacing", spacing, SPACINGS)
     if isinstance(terms, str) or not isinstance(terms, Sequence) or not len(terms):
-        raise ValueError(f"terms = {terms!r} is not allowed; allowed: a list of {', '.join(TERMS)}")
+        raise ValueError(f"terms = {shown(terms)} is not allowed; allowed: a list of {', '.join(TERMS)}")
     for term in terms:
         require_name("terms", term, TERMS)
     require_real("air_density", air_density, 0.0, open_low=True, unit="kg/m³")

@@ -11,6 +11,8 @@ import numpy as np
 from flapenv.aero.arrays import Real, as_numpy, is_tensor
 
 T = TypeVar("T")
+TINIEST, HUGEST = 1e-15, 1e15
+"""Sizes, masses and frequencies in SI units lie between these, far beyond what flaps: their products stay numbers."""
 LONGEST_SHOWN, LONGEST_LINE = 80, 1000
 """Letters of a value in an error, and of a whole error; what is longer is cut in the middle."""
 
@@ -30,7 +32,10 @@ def one_line(text: object, most: int = LONGEST_LINE) -> str:
 
 def shown(value: object) -> str:
     """A value of unknown origin as an error shows it."""
-    return one_line(repr(value), LONGEST_SHOWN)
+    try:
+        return one_line(repr(value), LONGEST_SHOWN)
+    except ValueError:  # a whole number of more digits than Python writes
+        return f"a {type(value).__name__} that cannot be shown"
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
@@ -143,7 +148,7 @@ def require_scalar(field: str, value: object, low: float = -np.inf, high: float 
     """
     number = require_real(field, value, low, high, **ends)
     if np.ndim(number):
-        raise TypeError(f"{field} = {value!r} is not allowed; allowed: one number")
+        raise TypeError(f"{field} = {shown(value)} is not allowed; allowed: one number")
     return float(number)
 
 
@@ -154,7 +159,7 @@ def require_flag(field: str, value: object) -> bool:
         TypeError: for anything else.
     """
     if not isinstance(value, bool):
-        raise TypeError(f"{field} = {value!r} is not allowed; allowed: True, False")
+        raise TypeError(f"{field} = {shown(value)} is not allowed; allowed: True, False")
     return value
 
 
@@ -177,7 +182,7 @@ def require_count(field: str, value: object, low: int = 1, high: int | None = No
     """
     where = f"whole numbers from {low}" if high is None else f"whole numbers from {low} to {high}"
     if isinstance(value, bool | np.bool_) or not isinstance(value, int | np.integer):
-        raise TypeError(f"{field} = {value!r} is not a whole number; allowed: {where}")
+        raise TypeError(f"{field} = {shown(value)} is not a whole number; allowed: {where}")
     if value < low or (high is not None and value > high):
         raise ValueError(f"{field} = {value} is not allowed; allowed: {where}")
     return int(value)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_arrays, as_result
-from flapenv.aero.checks import require_real
+from flapenv.aero.checks import require_real, shown
 
 SECTION_LIFT_SLOPE = 0.09 * 180 / math.pi
 """C_Lα,2d = 0.09 per degree [1/rad], Okamoto et al.'s flat plates at insect Reynolds numbers (Part II, 2.3.2)."""
@@ -155,7 +155,7 @@ def checked_coefficients(function: object) -> None:
         ValueError: for NaN, inf, a negative C_D or none at all.
     """
     if not callable(function):
-        raise TypeError(f"coefficients = {function!r} are not allowed; allowed: a name, or a function of alpha")
+        raise TypeError(f"coefficients = {shown(function)} are not allowed; allowed: a name, or a function of alpha")
     alpha = np.linspace(0, math.pi / 2, 91)
     answer = function(alpha)
     if not isinstance(answer, tuple) or len(answer) != 2:

@@ -10,7 +10,7 @@ import warnings
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result
-from flapenv.aero.checks import require_count, require_real
+from flapenv.aero.checks import require_count, require_real, shown
 from flapenv.aero.planform import BetaPlanform
 from flapenv.aero.wing import Wing
 
@@ -99,7 +99,7 @@ def k_ind(wing: Wing, *, root_offset: float = 0.0, section_lift_slope: float = 2
         UserWarning: where a planform other than beta changes it by more than 1 % between half of the terms and all.
     """
     if not isinstance(wing, Wing):
-        raise TypeError(f"wing = {wing!r} is not allowed; allowed: a Wing")
+        raise TypeError(f"wing = {shown(wing)} is not allowed; allowed: a Wing")
     require_real("root_offset", root_offset, 0.0)
     require_real("section_lift_slope", section_lift_slope, 0.0, open_low=True, unit="1/rad")
     require_count("terms", terms)

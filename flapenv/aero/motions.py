@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from flapenv.aero.checks import record, require_count, require_real, require_scalar
+from flapenv.aero.checks import record, require_count, require_real, require_scalar, shown
 
 FUNCTION_SAMPLES = 720
 """Samples a cycle that a motion given as functions is drawn through."""
@@ -261,7 +261,7 @@ class SampledMotion(_AngleMotion):
         columns = []
         for name, function in (("flap_angle", flap_angle), ("pitch_angle", pitch_angle)):
             if not callable(function):
-                raise TypeError(f"{name} = {function!r} is not allowed; allowed: a function of the phase")
+                raise TypeError(f"{name} = {shown(function)} is not allowed; allowed: a function of the phase")
             first, second = (
                 np.asarray(require_real(f"{name}'s value", function(turn), unit="rad"))
                 for turn in (phase, phase + 2 * math.pi)

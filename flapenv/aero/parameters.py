@@ -7,7 +7,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from flapenv.aero.arrays import as_numpy
-from flapenv.aero.checks import require_real
+from flapenv.aero.checks import HUGEST, TINIEST, require_real
 
 CLEARLY = 1.1
 """How far over its range an angle must be for degrees to be guessed: 3.15 is a rounded π."""
@@ -24,7 +24,6 @@ class StrokeParameter:
         unit: SI unit of the value, empty for a ratio.
         low: lower end of what is physically meaningful [unit].
         high: upper end [unit].
-        open_low: whether `low` itself is refused.
         box: the default search box [unit]; for the frequency in multiples of the reference frequency.
         scale: how an action in [-1, 1] runs over the box: "linear", "log" (of the value) or "log-complement"
             (of one minus the value).
@@ -38,7 +37,6 @@ class StrokeParameter:
     unit: str
     low: float
     high: float
-    open_low: bool = False
     box: tuple[float, float]
     scale: Literal["linear", "log", "log-complement"]
     log_floor: float = 0.0
@@ -51,7 +49,7 @@ class StrokeParameter:
             ValueError: if it is outside, NaN or infinite; an angle that looks like degrees is told in radians.
         """
         try:
-            return require_real(field or self.name, value, self.low, self.high, open_low=self.open_low, unit=self.unit)
+            return require_real(field or self.name, value, self.low, self.high, unit=self.unit)
         except ValueError as mistake:
             raise ValueError(f"{mistake}{self._guess(as_numpy(value))}") from None
 
@@ -85,9 +83,8 @@ STROKE_PARAMETERS: dict[str, StrokeParameter] = {
             symbol="f",
             meaning="flapping frequency",
             unit="Hz",
-            low=0.0,
-            high=math.inf,
-            open_low=True,
+            low=TINIEST,
+            high=HUGEST,
             box=(0.5, 1.5),
             scale="log",
         ),
@@ -96,9 +93,8 @@ STROKE_PARAMETERS: dict[str, StrokeParameter] = {
             symbol="φmax",
             meaning="flapping amplitude, half of the angle swept in a half-stroke",
             unit="rad",
-            low=0.0,
+            low=TINIEST,
             high=math.pi,
-            open_low=True,
             box=(math.radians(40), math.radians(90)),
             scale="linear",
         ),

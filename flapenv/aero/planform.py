@@ -10,11 +10,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_numpy
-from flapenv.aero.checks import record, require_flag, require_real
+from flapenv.aero.checks import record, require_flag, require_real, shown
 from flapenv.aero.quadrature import gauss_rule, graded_rule
 
 R1_HAT_LIMIT = 0.929 ** (1 / 0.268)
 """Largest r̂₁ for which Ellington's correlation leaves a spread of area, r̂₂ > r̂₁ (here 0.7597)."""
+LEAST_R1_HAT, LARGEST_R1_HAT = 1e-3, R1_HAT_LIMIT - 1e-6
+"""Nearer to 0 or to the limit the exponents vanish, and with them every rule of integration."""
 FUNCTION_NODES = 256
 """Nodes of the integrals over a planform that is given as a function."""
 LARGEST_GAUSS_RULE = 24
@@ -43,7 +45,7 @@ class BetaPlanform:
     """Ellington's beta planform, ĉ = r̂^(p-1) (1-r̂)^(q-1)/B(p, q), by its first moment alone (Ellington 1984).
 
     Attributes:
-        r1_hat: r̂₁ in (0, 0.7597), where the exponents are positive; a scalar, array or tensor [-].
+        r1_hat: r̂₁ in [0.001, 0.7597], where the exponents are positive; a scalar, array or tensor [-].
 
     Raises:
         TypeError: if it is not real.
@@ -54,7 +56,7 @@ class BetaPlanform:
 
     def __post_init__(self) -> None:
         """Check the field."""
-        value = require_real("r1_hat", self.r1_hat, 0.0, R1_HAT_LIMIT, open_low=True, open_high=True)
+        value = require_real("r1_hat", self.r1_hat, LEAST_R1_HAT, LARGEST_R1_HAT)
         object.__setattr__(self, "r1_hat", value)
 
     @property
@@ -240,7 +242,7 @@ class FunctionPlanform:
     def __post_init__(self) -> None:
         """Try the function over the span and keep the mean of what it gives."""
         if not callable(self.function):
-            raise TypeError(f"chord function = {self.function!r} is not allowed; allowed: a function of r/R")
+            raise TypeError(f"chord function = {shown(self.function)} is not allowed; allowed: a function of r/R")
         r_hat, weights = graded_rule(FUNCTION_NODES)
         chord = np.asarray(require_real("chord function's value", self.function(r_hat), 0.0))
         if chord.shape != r_hat.shape:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_arrays, as_numpy, as_result
-from flapenv.aero.checks import record, require_name, require_real, require_scalar
+from flapenv.aero.checks import HUGEST, TINIEST, record, require_name, require_real, require_scalar, shown
 from flapenv.aero.planform import BetaPlanform, Planform, TabulatedPlanform
 
 EDGE_OUTLINES = ("ellipse", "symmetric")
@@ -24,11 +24,11 @@ class Wing:
     Every number is a scalar or an array; arrays broadcast and the properties then have their shape.
 
     Attributes:
-        length: R, from the root to the tip [m], > 0.
-        mean_chord: c̄ [m], > 0.
-        r1_hat: r̂₁, radius of the centre of area over R, in (0, 0.7597); any planform but beta reports its own.
+        length: R, from the root to the tip [m].
+        mean_chord: c̄ [m].
+        r1_hat: r̂₁, radius of the centre of area over R, in [0.001, 0.7597]; any planform but beta reports its own.
         planform: a `TabulatedPlanform` (or the dict of one) or `FunctionPlanform`; None for the beta planform.
-        mass: of one wing, spread evenly over its area [kg], > 0; None where inertia is not asked for.
+        mass: of one wing, spread evenly over its area [kg]; None where inertia is not asked for.
         pitch_axis: x̂₀, the axis it pitches about, behind the leading edge [chords], in [0, 1].
 
     Raises:
@@ -46,20 +46,22 @@ class Wing:
     def __post_init__(self) -> None:
         """Check every field."""
         set_ = object.__setattr__
-        set_(self, "length", require_real("length", self.length, 0.0, open_low=True, unit="m"))
-        set_(self, "mean_chord", require_real("mean_chord", self.mean_chord, 0.0, open_low=True, unit="m"))
+        set_(self, "length", require_real("length", self.length, TINIEST, HUGEST, unit="m"))
+        set_(self, "mean_chord", require_real("mean_chord", self.mean_chord, TINIEST, HUGEST, unit="m"))
         set_(self, "pitch_axis", require_scalar("pitch_axis", self.pitch_axis, 0.0, 1.0))
         if self.mass is not None:
-            set_(self, "mass", require_real("wing mass", self.mass, 0.0, open_low=True, unit="kg"))
+            set_(self, "mass", require_real("wing mass", self.mass, TINIEST, HUGEST, unit="kg"))
         if isinstance(self.planform, Mapping):
             set_(self, "planform", TabulatedPlanform(**self.planform))
         if self.planform is None and self.r1_hat is None:
-            raise TypeError("Wing needs r1_hat, for the beta planform, or a planform")
+            raise TypeError("Wing needs r1_hat, for the beta planform, or a planform; allowed: one of them")
         if self.planform is None:
             set_(self, "r1_hat", BetaPlanform(r1_hat=self.r1_hat).r1_hat)
             return
         if isinstance(self.planform, type) or not hasattr(self.planform, "relative_chord"):
-            raise TypeError(f"planform = {self.planform!r} is not allowed; allowed: a planform, or the dict of a table")
+            raise TypeError(
+                f"planform = {shown(self.planform)} is not allowed; allowed: a planform, or the dict of a table"
+            )
         own = self.planform.r1_hat
         if self.r1_hat is not None and not np.allclose(as_numpy(require_real("r1_hat", self.r1_hat)), own, rtol=1e-9):
             raise ValueError(
@@ -90,11 +92,11 @@ class Wing:
             TypeError: for columns that are not real numbers of equal length.
             ValueError: for radii that do not rise from 0, negative chords, no area, NaN or inf.
         """
-        r = np.atleast_1d(np.asarray(require_real("radius", radius, unit="m")))
-        c = np.atleast_1d(np.asarray(require_real("chord", chord, 0.0, unit="m")))
+        r = np.atleast_1d(np.asarray(require_real("radius", radius, high=HUGEST, unit="m")))
+        c = np.atleast_1d(np.asarray(require_real("chord", chord, 0.0, HUGEST, unit="m")))
         if r.shape != c.shape or r.ndim != 1 or r.size < 2:
             raise TypeError(f"radius and chord have shapes {r.shape}, {c.shape}; allowed: two columns of equal length")
-        if r[0] != 0 or r[-1] <= 0:
+        if r[0] != 0 or r[-1] < TINIEST:
             raise ValueError(
                 f"radius runs from {r[0]:.6g} to {r[-1]:.6g} m and does not cover the span; allowed: from 0 (root) to "
                 "the length, with a chord at both"

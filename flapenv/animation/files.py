@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flapenv.aero.checks import shown
 from flapenv.drawing import BLACK, BLUE, GREEN, ORANGE, RED
 
 TINTS = 10
@@ -27,16 +28,18 @@ def checked_path(path: str | os.PathLike[str]) -> Path:
         IsADirectoryError: if it is a folder itself.
     """
     if not isinstance(path, str | os.PathLike):
-        raise TypeError(f"path = {path!r} is not allowed; allowed: a path that ends in {' or '.join(WRITERS)}")
+        raise TypeError(f"path = {shown(path)} is not allowed; allowed: a path that ends in {' or '.join(WRITERS)}")
     found = Path(path)
     if found.suffix.lower() not in WRITERS:
-        raise ValueError(f"path = {str(path)!r} is not allowed; allowed: a path that ends in {' or '.join(WRITERS)}")
+        raise ValueError(
+            f"path = {shown(str(path))} is not allowed; allowed: a path that ends in {' or '.join(WRITERS)}"
+        )
     if found.suffix.lower() == ".mp4" and importlib.util.find_spec("imageio_ffmpeg") is None:
         raise ImportError("MP4 needs imageio-ffmpeg: pip install 'flapenv[report]'; a path that ends in .gif does not")
     if not found.parent.is_dir():
-        raise FileNotFoundError(f"path = {str(path)!r}: {found.parent} is not a folder; allowed: one that exists")
+        raise FileNotFoundError(f"path = {shown(str(path))}: {found.parent} is not a folder; allowed: one that exists")
     if found.is_dir():
-        raise IsADirectoryError(f"path = {str(path)!r} is a folder; allowed: a file")
+        raise IsADirectoryError(f"path = {shown(str(path))} is a folder; allowed: a file")
     return found
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from flapenv.aero.checks import require_count, require_flag, require_scalar
+from flapenv.aero.checks import require_count, require_flag, require_scalar, shown
 from flapenv.aero.motions import Motion
 from flapenv.animation.beat import drawn_beat
 from flapenv.animation.files import WRITERS, checked_path
@@ -75,7 +75,8 @@ def animate(
     for name, motion in zip(("stroke", "compare"), motions, strict=False):
         if isinstance(motion, str | Insect | Mapping):
             raise TypeError(
-                f"{name} = {motion!r} is not allowed; allowed: a Stroke, SampledMotion, FourierMotion, or None for the "
+                f"{name} = {shown(motion)} is not allowed; allowed: a Stroke, SampledMotion, FourierMotion, or None "
+                "for the "
                 "insect's own: animate(None, insect)"
             )
     beats = [drawn_beat(insect, motion, model=options, terms=terms, frames=count) for motion in motions]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from gymnasium.vector import AutoresetMode
 
-from flapenv.aero.checks import allowed, require_count, require_name
+from flapenv.aero.checks import LONGEST_SHOWN, allowed, one_line, require_count, require_name, shown
 
 RENDER_MODES = ("rgb_array",)
 
@@ -21,7 +21,7 @@ def as_autoreset_mode(value: AutoresetMode | str) -> AutoresetMode:
     for mode in AutoresetMode if isinstance(value, AutoresetMode | str) else ():
         if value in (mode, mode.name, mode.value):
             return mode
-    raise ValueError(f"autoreset_mode = {value!r} is unknown; {allowed(value, [m.name for m in AutoresetMode])}")
+    raise ValueError(f"autoreset_mode = {shown(value)} is unknown; {allowed(value, [m.name for m in AutoresetMode])}")
 
 
 InfoChoice = str | Sequence[str]
@@ -38,7 +38,7 @@ def require_infos(infos: Any, known: tuple[str, ...]) -> tuple[str, ...]:
     if isinstance(infos, str):
         return known if require_name("infos", infos, ("all", "none")) == "all" else ()
     if not isinstance(infos, Sequence):
-        raise TypeError(f"infos = {infos!r} is not allowed; allowed: 'all', 'none' or a list of keys")
+        raise TypeError(f"infos = {shown(infos)} is not allowed; allowed: 'all', 'none' or a list of keys")
     return tuple(require_name("infos key", key, known) for key in infos)
 
 
@@ -49,7 +49,7 @@ def require_render_mode(value: str | None) -> str | None:
         ValueError: for an unknown mode.
     """
     if value is not None and value not in RENDER_MODES:
-        raise ValueError(f"render_mode = {value!r} is unknown; {allowed(value, RENDER_MODES)}, or None")
+        raise ValueError(f"render_mode = {shown(value)} is unknown; {allowed(value, RENDER_MODES)}, or None")
     return value
 
 
@@ -70,11 +70,11 @@ def require_options(options: dict[str, Any] | None, known: tuple[str, ...]) -> d
         ValueError: for an unknown key.
     """
     if options is not None and not isinstance(options, dict):
-        raise TypeError(f"options = {options!r} are not allowed; allowed: a dict with keys of {known}, or None")
+        raise TypeError(f"options = {shown(options)} are not allowed; allowed: a dict with keys of {known}, or None")
     options = dict(options or {})
     for key in options:
         if key not in known:
-            raise ValueError(f"reset option {key!r} = {options[key]!r} is unknown; {allowed(key, known)}")
+            raise ValueError(f"reset option {shown(key)} = {shown(options[key])} is unknown; {allowed(key, known)}")
     return options
 
 
@@ -90,7 +90,7 @@ def checked_actions(field: str, actions: Any, shape: tuple[int, ...] | None) -> 
     except ValueError:  # rows of different lengths
         array = np.empty(0, dtype=object)
     if array.dtype.kind not in "fiu":
-        raise TypeError(f"{field} = {actions!r} are not real numbers; allowed: floats in [-1, 1]")
+        raise TypeError(f"{field} = {shown(actions)} are not real numbers; allowed: floats in [-1, 1]")
     if array.shape != shape:
         raise ValueError(f"{field} with shape {array.shape} is not allowed; allowed: {shape}")
     if not np.isfinite(array).all():
@@ -116,7 +116,10 @@ def refuse_unknown(unknown: dict[str, Any], environment: type, *, hidden: tuple[
     """
     known = [name for name in arguments_of(environment) if name not in hidden]
     for name, value in unknown.items():
-        raise TypeError(f"{name} = {value!r} is not an argument of this environment; {allowed(name, known)}")
+        raise TypeError(
+            f"{one_line(name, LONGEST_SHOWN)} = {shown(value)} is not an argument of this environment; "
+            f"{allowed(name, known)}"
+        )
 
 
 def refuse_unused(arguments: dict[str, Any], environment: type, when: str) -> None:
@@ -133,4 +136,6 @@ def refuse_unused(arguments: dict[str, Any], environment: type, when: str) -> No
     known = inspect.signature(environment).parameters
     for name, value in arguments.items():
         if value != known[name].default:
-            raise ValueError(f"{name} = {value!r} belongs to {when} and would change nothing; allowed: leave it out")
+            raise ValueError(
+                f"{name} = {shown(value)} belongs to {when} and would change nothing; allowed: leave it out"
+            )

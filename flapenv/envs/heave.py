@@ -14,6 +14,7 @@ from flapenv.coordinates import StrokeCoordinates
 from flapenv.envs.arguments import InfoChoice, refuse_unknown
 from flapenv.envs.batch import BatchEnv, Info
 from flapenv.envs.describe import action_table, described, markdown_table, stroke_rows
+from flapenv.envs.flyable import require_flyable
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.single import SingleEnv
 from flapenv.envs.wing_features import OBSERVATION_LIMIT
@@ -22,6 +23,7 @@ from flapenv.heave.gusts import EpisodeStreams, GustModel, Place, as_gusts
 from flapenv.heave.linear import linear_beat, worth_of_motion
 from flapenv.heave.trim import BOX
 from flapenv.insects import Insect
+from flapenv.model import HoverModel
 
 HEIGHT_LIMIT = 5.0
 """An episode ends at this height above or below the start's middle [wing lengths]."""
@@ -100,6 +102,7 @@ class HeaveVectorEnv(BatchEnv):
         self.gusts = as_gusts(gusts)
         self.dtype = np.dtype(require_name("dtype", getattr(dtype, "__name__", str(dtype)), ("float32", "float64")))
         self.insects = listed_insects(insect)
+        require_flyable(self.insects, HoverModel())
         self.dynamics = HeaveDynamics(self.insects, self.dtype)
         self.coordinates = self.dynamics.coordinates
 

@@ -13,11 +13,12 @@ from flapenv.adapt.ladder import BOX
 from flapenv.adapt.references import COORDINATES
 from flapenv.adapt.task import BEATS, LEAST_MARGIN, NOISE, PROBLEM, AdaptTask, Draws, Flight, choose
 from flapenv.adapt.tuning import NAMES, shipped, tuned_for
-from flapenv.aero.checks import require_count, require_flag, require_name, require_scalar
+from flapenv.aero.checks import require_count, require_flag, require_name, require_scalar, shown
 from flapenv.aero.parameters import STROKE_PARAMETERS
 from flapenv.envs.arguments import InfoChoice, refuse_unknown
 from flapenv.envs.batch import BatchEnv, Info
 from flapenv.envs.describe import action_table, described, stroke_rows
+from flapenv.envs.flyable import require_flyable
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.last_beat import LastBeat
 from flapenv.envs.single import SingleEnv
@@ -94,6 +95,7 @@ class HoverAdaptVectorEnv(BatchEnv):
         require_flag("references", references)
         require_flag("tune_references", tune_references)
         self.insects = listed_insects(insect)
+        require_flyable(self.insects, PROBLEM.model)
         self.dtype = np.dtype(require_name("dtype", getattr(dtype, "__name__", str(dtype)), ("float32", "float64")))
         self.task, self.coordinates = AdaptTask(self.insects), COORDINATES
         self._rule = BOX.time_rule(tolerance=QUADRATURE_TOLERANCE)
@@ -159,7 +161,7 @@ class HoverAdaptVectorEnv(BatchEnv):
         known = tuple(vars(NOMINAL))
         if not isinstance(condition, Mapping):
             raise TypeError(
-                f"reset option condition = {condition!r} is not allowed; allowed: a dict with keys of "
+                f"reset option condition = {shown(condition)} is not allowed; allowed: a dict with keys of "
                 f"{', '.join(known)}"
             )
         values = {}
@@ -170,7 +172,7 @@ class HoverAdaptVectorEnv(BatchEnv):
         largest = float(np.min(self.task.flight(insects, _rows(checked, len(insects))).max_weight_support))
         if largest < LEAST_MARGIN:
             raise ValueError(
-                f"reset option condition = {condition!r} is not allowed: the largest weight support there is "
+                f"reset option condition = {shown(condition)} is not allowed: the largest weight support there is "
                 f"{largest:.3f}; allowed: conditions with {LEAST_MARGIN:g} or more"
             )
         return checked

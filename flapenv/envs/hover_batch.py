@@ -16,6 +16,7 @@ from flapenv.aero.stroke import Stroke
 from flapenv.coordinates import Scaling, StrokeCoordinates
 from flapenv.envs.arguments import InfoChoice, checked_actions, refuse_unknown, refuse_unused
 from flapenv.envs.batch import Info
+from flapenv.envs.flyable import require_finite_power
 from flapenv.envs.hover_of_one import HoverOfOne
 from flapenv.envs.insect_choice import RANDOM_WING, InsectChoice, choose_insects, choose_pool
 from flapenv.envs.one_beat import FIRST_FELT, SMALLEST_POWER, OneBeatEnv
@@ -127,7 +128,7 @@ class HoverVectorEnv(OneBeatEnv):
         )
         self.flyers, self.accelerator = self.objective.flyers, accelerator
 
-        self._require_finite_power()
+        require_finite_power(self.objective.cases, self.problem, self.dtype)
         super().__init__(
             num_envs,
             cases=self.objective.cases,
@@ -142,17 +143,6 @@ class HoverVectorEnv(OneBeatEnv):
             reward_space=spaces.Box(self.problem.reward_floor, 0.0, (2,), np.float64) if reward == "vector" else None,
         )
         self._stroke = {name: np.zeros(num_envs, dtype=self.dtype) for name in STROKE_PARAMETERS}
-
-    def _require_finite_power(self) -> None:
-        """Refuse frequencies whose power the type of the computation cannot hold."""
-        cases, box = self.objective.cases, self.problem.box
-        frequency, amplitude = (box.bounds(name, cases.reference)[1] for name in ("frequency", "flap_amplitude"))
-        largest = float(np.max(1e3 * cases.power_scale * (4.0 * frequency * amplitude) ** 3))
-        if not largest < float(np.finfo(self.dtype).max):
-            raise ValueError(
-                f"upper bound of frequency = {float(np.max(frequency)):.6g} is not allowed with dtype = "
-                f"'{self.dtype.name}', whose numbers end before the power; allowed: a lower one"
-            )
 
     def _beat(self, actions: np.ndarray, mask: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Info]:
         strokes, clipped = self.coordinates.decode(actions.astype(self.dtype, copy=False), self._own(self._insect))

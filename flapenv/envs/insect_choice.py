@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from flapenv.aero.checks import is_single, require_count, require_name
+from flapenv.aero.checks import is_single, require_count, require_name, shown
+from flapenv.envs.flyable import require_flyable
 from flapenv.insects import INSECTS, Insect, as_insect, load_insect
 from flapenv.optimum import optimum
 from flapenv.problem import HoverProblem
@@ -44,9 +45,9 @@ def listed_insects(choice: InsectChoice, *, others: tuple[str, ...] = ()) -> tup
     names = [one.name for one in insects]
     for one in insects:
         if not is_single(one):
-            raise TypeError(f"insect {one.name!r} has array fields; allowed: insects with scalar fields")
+            raise TypeError(f"insect {shown(one.name)} has array fields; allowed: insects with scalar fields")
         if names.count(one.name) > 1:
-            raise ValueError(f"insect holds {names.count(one.name)} called {one.name!r}; allowed: each name once")
+            raise ValueError(f"insect holds {names.count(one.name)} called {shown(one.name)}; allowed: each name once")
     return insects
 
 
@@ -63,6 +64,7 @@ def choose_insects(choice: InsectChoice, problem: HoverProblem, *, include_infea
         ValueError: for an unknown name, no insect at all, or "all" where none is feasible.
     """
     insects = listed_insects(choice, others=(RANDOM_WING,))
+    require_flyable(insects, problem.model)
     largest = {insect.name: optimum(insect, problem) for insect in insects}
     infeasible = {name: best.max_weight_support for name, best in largest.items() if not best.feasible}
     dropped = isinstance(choice, str) and choice == "all" and not include_infeasible
@@ -133,7 +135,7 @@ def chosen_rows(chosen: Any, names: Sequence[str], rows: int) -> np.ndarray:
         ValueError: for an unknown name or another number of them.
     """
     if not isinstance(chosen, str | list | tuple | np.ndarray):
-        raise TypeError(f"reset option insect = {chosen!r} is not allowed; allowed: a name, or one for each row")
+        raise TypeError(f"reset option insect = {shown(chosen)} is not allowed; allowed: a name, or one for each row")
     if isinstance(chosen, np.ndarray) and chosen.ndim != 1:
         raise ValueError(f"reset option insect has shape {chosen.shape}; allowed: a name, or one for each row")
     wanted = [chosen] * rows if isinstance(chosen, str) else list(chosen)

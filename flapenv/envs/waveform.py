@@ -11,6 +11,7 @@ from flapenv.case import hover_case, stack_cases
 from flapenv.envs.arguments import InfoChoice, refuse_unknown
 from flapenv.envs.batch import Info
 from flapenv.envs.describe import ACTION_HEADER, Row, described, markdown_table, stroke_rows
+from flapenv.envs.flyable import require_finite_power, require_flyable
 from flapenv.envs.hover_batch import DEFAULT_PROBLEM, ProblemChoice
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, without_infeasible
 from flapenv.envs.one_beat import OneBeatEnv
@@ -110,7 +111,9 @@ class WaveformVectorEnv(OneBeatEnv):
         insects = listed_insects(choice)
         for one in insects:
             self.problem.require_suitable(one.name, one.reference)
+        require_flyable(insects, self.problem.model)
         cases = stack_cases([hover_case(one, self.problem.model) for one in insects])
+        require_finite_power(cases, self.problem, self.dtype)
         largest = largest_weight_support(cases, self.problem, self.coordinates)
         margins = {one.name: float(most) for one, most in zip(insects, largest, strict=True) if most < 1}
         dropped = isinstance(choice, str) and choice == "all" and not include_infeasible

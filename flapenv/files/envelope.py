@@ -36,7 +36,7 @@ def existing(path: str | os.PathLike[str], mend: str) -> Path:
         OSError: if there is none, or a folder, a pipe or a device.
     """
     if not isinstance(path, str | os.PathLike):
-        raise TypeError(f"path = {path!r} is not allowed; allowed: a path of {mend}")
+        raise TypeError(f"path = {shown(path)} is not allowed; allowed: a path of {mend}")
     found = Path(path)
     require_file(found, one_line(found), mend)
     return found
@@ -50,7 +50,7 @@ def require_format(content: Mapping[str, Any], name: str, units: Mapping[str, st
     """
     told = content.get("format")
     if told != name:
-        raise ValueError(f"format = {shown(told)} is not allowed; allowed: {name!r}, a file that says what it is")
+        raise ValueError(f"format = {shown(told)} is not allowed; allowed: {shown(name)}, a file that says what it is")
     version = content.get("version")
     if isinstance(version, bool) or version != VERSION:
         raise ValueError(f"version = {shown(version)} is not allowed; allowed: {VERSION}")

@@ -63,7 +63,7 @@ def require_insect(insect: Insect) -> None:
     _require_name(insect.name)
     if insect.name in INSECTS and isinstance(described(insect), dict):
         raise ValueError(
-            f"name = {insect.name!r} is that of an insect with other numbers; allowed: a name of one's own"
+            f"name = {shown(insect.name)} is that of an insect with other numbers; allowed: a name of one's own"
         )
     _require_body(insect)
     for part, least in ((insect.k_table, 1.0), (insect.force_constants, 0.0)):

@@ -8,9 +8,9 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from flapenv.aero.checks import require_name
+from flapenv.aero.checks import HUGEST, TINIEST, require_name
 from flapenv.aero.parameters import STROKE_PARAMETERS
-from flapenv.aero.planform import R1_HAT_LIMIT, TabulatedPlanform
+from flapenv.aero.planform import LARGEST_R1_HAT, LEAST_R1_HAT, TabulatedPlanform
 from flapenv.aero.stroke import Stroke
 from flapenv.aero.wing import Wing
 from flapenv.files import strokes, wings
@@ -75,11 +75,11 @@ def _object(properties: Schema, *, needed: Collection[str]) -> Schema:
     return {"type": "object", "properties": properties, "required": list(needed), "additionalProperties": False}
 
 
-def _number(low: float = -math.inf, high: float = math.inf, *, open_low: bool = False, meaning: str = "") -> Schema:
+def _number(low: float = -math.inf, high: float = math.inf, *, meaning: str = "") -> Schema:
     """A number in a range."""
     made: Schema = {"type": "number"}
     if math.isfinite(low):
-        made["exclusiveMinimum" if open_low else "minimum"] = low
+        made["minimum"] = low
     if math.isfinite(high):
         made["maximum"] = high
     return {**made, "description": meaning} if meaning else made
@@ -109,7 +109,7 @@ def _stroke_fields() -> Schema:
     for name, row in STROKE_PARAMETERS.items():
         low, high = STROKES.get(name, (row.low, row.high))
         meaning = f"{row.meaning} [{row.unit or '-'}]"
-        made[name] = _number(low, high, open_low=row.open_low and name not in STROKES, meaning=meaning)
+        made[name] = _number(low, high, meaning=meaning)
     return made
 
 
@@ -119,7 +119,7 @@ def _limits() -> Schema:
     for field in (field.name for field in dataclasses.fields(StrokeBox)):
         row = STROKE_PARAMETERS[field.removesuffix("_ratio")]
         low, high = STROKES.get(field, (row.low, row.high))
-        bound = _number(low, high, open_low=row.open_low and field not in STROKES)
+        bound = _number(low, high)
         unit = "over the insect's own" if field.endswith("_ratio") else row.unit or "-"
         pair = {"type": "array", "items": bound, "minItems": 2, "maxItems": 2}
         made[field] = {"anyOf": [pair, bound], "description": f"{row.meaning} [{unit}]"}
@@ -133,17 +133,17 @@ def _wing_fields() -> Schema:
     return {
         "length": _number(*LENGTHS, meaning="R, from root to tip [m]"),
         "mean_chord": _number(*CHORDS, meaning="c̄ [m]"),
-        "r1_hat": _or_null({"type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": R1_HAT_LIMIT}),
+        "r1_hat": _or_null({"type": "number", "minimum": LEAST_R1_HAT, "maximum": LARGEST_R1_HAT}),
         "planform": _or_null(planform),
-        "mass": _or_null(_number(0, open_low=True, meaning="of one wing [kg]")),
+        "mass": _or_null(_number(TINIEST, HUGEST, meaning="of one wing [kg]")),
         "pitch_axis": _number(0, 1, meaning="behind the leading edge [chords]"),
     }
 
 
 def _insect() -> Schema:
     """The fields of `Insect`, as `Insect.to_dict` gives them."""
-    positive, factor = _number(0, LARGEST_FACTOR, open_low=True), _number(1, LARGEST_FACTOR)
-    above = _number(0, open_low=True)
+    positive, factor = _number(TINIEST, LARGEST_FACTOR), _number(1, LARGEST_FACTOR)
+    above = _number(TINIEST, HUGEST)
     reference = _record(HoverReference, {"weight_support": above, "specific_power": _or_null(above)})
     factors = {"k_ind": factor, "k_tip": factor, "k_revolving": _or_null(factor)}
     constant = _number(0, LARGEST_FACTOR)
@@ -153,7 +153,7 @@ def _insect() -> Schema:
         Insect,
         {
             "name": name,
-            "mass": _number(0, HEAVIEST, open_low=True, meaning="of the whole body [kg]"),
+            "mass": _number(TINIEST, HEAVIEST, meaning="of the whole body [kg]"),
             "wing": _record(Wing, _wing_fields()),
             "stroke": _record(Stroke, _stroke_fields()),
             "k_table": _or_null(_record(WingFactors, factors)),

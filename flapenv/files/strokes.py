@@ -55,7 +55,7 @@ class NamedStroke:
         if isinstance(self.stroke, Mapping):
             object.__setattr__(self, "stroke", Stroke(**self.stroke))
         if not isinstance(self.stroke, Stroke):
-            raise TypeError(f"stroke = {self.stroke!r} is not allowed; allowed: a Stroke or a dict of its fields")
+            raise TypeError(f"stroke = {shown(self.stroke)} is not allowed; allowed: a Stroke or a dict of its fields")
         if self.insect is not None:
             object.__setattr__(self, "insect", as_insect(self.insect))
             require_insect(self.insect)
@@ -143,7 +143,7 @@ def _checked(strokes: Sequence[NamedStroke]) -> Sequence[NamedStroke]:
     """Strokes that a file can hold, which can be read again."""
     for one in strokes:
         if not isinstance(one, NamedStroke):
-            raise TypeError(f"stroke = {one!r} is not allowed; allowed: NamedStrokes")
+            raise TypeError(f"stroke = {shown(one)} is not allowed; allowed: NamedStrokes")
     if not 1 <= len(strokes) <= MOST_STROKES:
         raise ValueError(f"{len(strokes)} strokes are not allowed in a file; allowed: from 1 to {MOST_STROKES:,}")
     return strokes
@@ -187,7 +187,9 @@ def _from_results(insects: Mapping[str, Any]) -> tuple[NamedStroke, ...]:
         with errors_of(where):
             found = NamedStroke(stroke=stroke, insect=entry.get("insect", name))
             if found.insect is None or found.insect.name != name:
-                raise ValueError(f"insect = {shown(entry['insect'])} is not the one it stands under; allowed: {name!r}")
+                raise ValueError(
+                    f"insect = {shown(entry['insect'])} is not the one it stands under; allowed: {shown(name)}"
+                )
         strokes.append(found)
     if not strokes:
         raise ValueError("insects holds none; allowed: the results of a run on Hover-v0")
@@ -214,7 +216,7 @@ def _to_table(strokes: Sequence[NamedStroke]) -> str:
         name = "" if one.insect is None else described(one.insect)
         if not isinstance(name, str):
             raise ValueError(
-                f"insect {one.insect.name!r} is none of {', '.join(INSECTS)}, and a CSV file holds names only; "
+                f"insect {shown(one.insect.name)} is none of {', '.join(INSECTS)}, and a CSV file holds names only; "
                 "allowed: NAME.json"
             )
         writer.writerow([name, *(repr(value) for value in _numbers(one.stroke).values())])

@@ -56,7 +56,7 @@ class WingFile:
     def __post_init__(self) -> None:
         """Check both; a limit may be one number, which fixes its parameter."""
         if not isinstance(self.insect, Insect):
-            raise TypeError(f"insect = {self.insect!r} is not allowed; allowed: an Insect")
+            raise TypeError(f"insect = {shown(self.insect)} is not allowed; allowed: an Insect")
         require_insect(self.insect)
         if not isinstance(self.limits, Mapping):
             raise TypeError(f"limits = {shown(self.limits)} are not allowed; allowed: an object of [lower, upper]")
@@ -145,7 +145,7 @@ def write_wing(path: str | os.PathLike[str], wing_file: WingFile) -> None:
         OSError: if it cannot be written.
     """
     if not isinstance(wing_file, WingFile):
-        raise TypeError(f"wing_file = {wing_file!r} is not allowed; allowed: a WingFile")
+        raise TypeError(f"wing_file = {shown(wing_file)} is not allowed; allowed: a WingFile")
     found = Path(path)
     if found.suffix.lower() != ".json":
         raise ValueError(f"{found} does not end in .json; allowed: NAME.json")

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from flapenv.aero.arrays import Real
-from flapenv.aero.checks import is_single, record
+from flapenv.aero.checks import is_single, record, shown
 from flapenv.aero.heaving import SPAN_NODES, heave_averages, span_rule, stack_rules
 from flapenv.case import hover_case, lift_constant, stack_cases
 from flapenv.coordinates import StrokeCoordinates
@@ -83,7 +83,7 @@ class HeaveDynamics:
         """
         for insect in insects:
             if not is_single(insect):
-                raise TypeError(f"insect {insect.name!r} has array fields; allowed: scalar fields")
+                raise TypeError(f"insect {shown(insect.name)} has array fields; allowed: scalar fields")
         self.insects, self.dtype, self.model = tuple(insects), np.dtype(dtype), HoverModel()
         self.coordinates = StrokeCoordinates(BOX)
         self.time = BOX.time_rule(tolerance=QUADRATURE_TOLERANCE)

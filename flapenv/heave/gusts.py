@@ -13,7 +13,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from flapenv.aero.checks import record, require_scalar
+from flapenv.aero.checks import record, require_scalar, shown
 
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 """Step of SplitMix64, 2⁶⁴ over the golden ratio."""
@@ -71,7 +71,7 @@ def as_gusts(value: GustModel | Mapping[str, float] | None) -> GustModel:
         return GustModel(**value)
     if isinstance(value, GustModel):
         return value
-    raise TypeError(f"gusts = {value!r} are not allowed; allowed: a GustModel, a dict of its fields, or None")
+    raise TypeError(f"gusts = {shown(value)} are not allowed; allowed: a GustModel, a dict of its fields, or None")
 
 
 class Place(IntEnum):

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flapenv.aero.arrays import Real, as_arrays
-from flapenv.aero.checks import require_count
+from flapenv.aero.checks import require_count, shown
 from flapenv.aero.parameters import StrokeReference
 from flapenv.aero.spline_motion import SplineMotion
 from flapenv.aero.splines import FEWEST_KNOTS
@@ -128,10 +128,10 @@ def require_served(problem: HoverProblem) -> None:
     model = problem.model
     if not model.is_plate:
         raise ValueError(
-            f"coefficients = {model.coefficients!r} are not served by free waveforms; allowed: lifting-line, "
+            f"coefficients = {shown(model.coefficients)} are not served by free waveforms; allowed: lifting-line, "
             "extended-lifting-line, with profile drag or without"
         )
     if model.accounting != "elastic":
-        raise ValueError(f"accounting = {model.accounting!r} is not served by free waveforms; allowed: elastic")
+        raise ValueError(f"accounting = {shown(model.accounting)} is not served by free waveforms; allowed: elastic")
     if problem.box.pitch_amplitude[1] == 0:
         raise ValueError("upper bound of pitch_amplitude = 0 lets no waveform lift anything; allowed: above 0")

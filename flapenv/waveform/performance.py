@@ -7,6 +7,7 @@ import numpy as np
 
 from flapenv.aero import induced
 from flapenv.aero.arrays import Real, as_arrays
+from flapenv.aero.checks import shown
 from flapenv.aero.spline_motion import SplineMotion
 from flapenv.aero.splines import POINTS, half_cycle_integral, peak_slope, spline_averages
 from flapenv.case import HoverCase, hover_case, induced_power_factor, lift_constant
@@ -100,7 +101,7 @@ def evaluate_waveform(insect: Insect | str, motion: SplineMotion, **model: Any) 
     """
     insect, options = as_insect(insect), HoverModel(**model)
     if not isinstance(motion, SplineMotion):
-        raise TypeError(f"motion = {motion!r} is not allowed; allowed: a SplineMotion")
+        raise TypeError(f"motion = {shown(motion)} is not allowed; allowed: a SplineMotion")
     require_served(HoverProblem(model=options))
     if options.uses_k:
         induced.k_flap(motion.flap_amplitude)

@@ -12,7 +12,7 @@ from flapenv.insects import as_insect
 from fuzzing import seeds
 from fuzzing.documents import changed
 from fuzzing.draw import Draw
-from fuzzing.verdict import Finding, require_finite
+from fuzzing.verdict import FindingError, require_finite
 
 ROWS = 3
 MODES = ("NextStep", "SameStep", "Disabled")
@@ -90,13 +90,13 @@ def require_given(results: Any, env: Any, rows: tuple[int, ...]) -> None:
     """Refuse what no environment may give: NaN or inf, and observations outside of their space.
 
     Raises:
-        Finding: naming it.
+        FindingError: naming it.
     """
     *numbers, info = results
     require_finite(numbers, "results")
     space = env.observation_space
     if not space.contains(numbers[0]):
-        raise Finding(f"observation {numbers[0]!r} is outside of {space}")
+        raise FindingError(f"observation {numbers[0]!r} is outside of {space}")
     require_finite_info(info, rows)
 
 
@@ -152,7 +152,9 @@ def _option(draw: Draw, rows: tuple[int, ...]) -> Any:
     if how == 3:
         return np.array([draw.byte() % 2 for _ in range(draw.byte() % 5)], dtype=draw.one_of(("bool", "int8")))
     if how == 4:
-        return np.array([draw.number(0.1) for _ in range(draw.byte() % 5)], dtype=object if draw.byte() % 8 == 0 else None)
+        return np.array(
+            [draw.number(0.1) for _ in range(draw.byte() % 5)], dtype=object if draw.byte() % 8 == 0 else None
+        )
     if how == 5:
         return changed(draw.one_of(SOME_CONDITIONS), draw)
     return draw.number(0.1)

@@ -13,8 +13,8 @@ import numpy as np
 from safetensors.numpy import save as tensors_as_bytes
 
 from agents.commands.train import read_config
-from agents.policy_file import load_policy
 from agents.policy_card import PolicyCard
+from agents.policy_file import load_policy
 from agents.presets import as_preset
 from agents.training_config import TrainingConfig
 from flapenv.assessment import assess
@@ -25,7 +25,7 @@ from flapenv.read_json import read_object
 from fuzzing import seeds
 from fuzzing.documents import changed, damaged, json_bytes
 from fuzzing.draw import Draw
-from fuzzing.verdict import Finding
+from fuzzing.verdict import FindingError
 
 RAW = 0
 """A first byte that is a multiple of four says: the rest is the file itself."""
@@ -82,7 +82,7 @@ def json_object(data: bytes) -> Any:
     found = read_object(path)
     path.write_text(json.dumps(found, allow_nan=False), encoding="utf-8")
     if read_object(path) != found:
-        raise Finding("JSON that was read is another when it is written and read again")
+        raise FindingError("JSON that was read is another when it is written and read again")
     return found
 
 
@@ -92,7 +92,7 @@ def strokes_json(data: bytes) -> Any:
     again = folder() / "again.json"
     again.write_text(strokes_to_text(found), encoding="utf-8")
     if read_strokes(again) != found:
-        raise Finding("strokes that were read are others when they are written and read again")
+        raise FindingError("strokes that were read are others when they are written and read again")
     return found
 
 
@@ -108,7 +108,7 @@ def wing(data: bytes) -> Any:
     again = folder() / "again.json"
     again.write_text(wing_to_text(found), encoding="utf-8")
     if read_wing(again) != found:
-        raise Finding("a wing that was read is another when it is written and read again")
+        raise FindingError("a wing that was read is another when it is written and read again")
     return found, found.problem(PROBLEMS["free-frequency"])
 
 
@@ -161,7 +161,7 @@ def policy(data: bytes) -> Any:
     actions, _ = actor.predict(np.zeros((2, actor.observation_size), np.float32))
     again = PolicyCard.from_dict(json.loads(json.dumps(found.to_dict())))
     if again != found:
-        raise Finding("a card that was read is another when it is written and read again")
+        raise FindingError("a card that was read is another when it is written and read again")
     return actions
 
 

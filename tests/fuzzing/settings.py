@@ -12,12 +12,11 @@ from agents.benchmark.runner import BenchmarkConfig
 from agents.commands import evaluate, explore, optimum, train
 from agents.competition import command as compare
 from agents.competition.compete import CompetitionConfig
-from agents.explorer.cases import EXPLORED
+from agents.explorer.cases import EXPLORED, Cases
 from agents.explorer.controls import OWN_WING, WING_CONTROLS, read_insect, read_stroke, shown_stroke, stroke_controls
-from agents.explorer.cases import Cases
 from agents.presets import PRESETS, setting_of
 from agents.training_config import TrainingConfig
-from flapenv import INSECTS, PROBLEMS, load_insect
+from flapenv import INSECTS, load_insect
 from flapenv.aero.checks import LONGEST_LINE, require_count
 from flapenv.files.plausible import require_insect
 from flapenv.insects import as_insect
@@ -25,15 +24,69 @@ from flapenv.problem import as_problem
 from fuzzing import seeds
 from fuzzing.documents import changed
 from fuzzing.draw import Draw
-from fuzzing.verdict import Finding
+from fuzzing.verdict import FindingError
 
 WORDS = (
-    "--preset --algorithm --list --config --seed --out --insects --wing --problem --leave-out --wingbeats --set "
-    "--no-report --quiet --noise --pool-seed --robustness --costs --port --insect --no-browser --presets --seeds --jobs "
-    "--root --report --wings --competitors --policy --help -h -- --preset=hover-sac --seed=1 --out=/ "
-    "hover hawkmoth published random-wings hover-ppo hover-sac free-frequency inertial docs/examples/robot.json "
-    "0 1 -1 1e3 3.5 999999999999999999999 nan rows=64 learning_rate=0.001 rows=[1] rows=null wingbeats=1e400 =1 a="
-).split()
+    "--preset",
+    "--algorithm",
+    "--list",
+    "--config",
+    "--seed",
+    "--out",
+    "--insects",
+    "--wing",
+    "--problem",
+    "--leave-out",
+    "--wingbeats",
+    "--set",
+    "--no-report",
+    "--quiet",
+    "--noise",
+    "--pool-seed",
+    "--robustness",
+    "--costs",
+    "--port",
+    "--insect",
+    "--no-browser",
+    "--presets",
+    "--seeds",
+    "--jobs",
+    "--root",
+    "--report",
+    "--wings",
+    "--competitors",
+    "--policy",
+    "--help",
+    "-h",
+    "--",
+    "--preset=hover-sac",
+    "--seed=1",
+    "--out=/",
+    "hover",
+    "hawkmoth",
+    "published",
+    "random-wings",
+    "hover-ppo",
+    "hover-sac",
+    "free-frequency",
+    "inertial",
+    "docs/examples/robot.json",
+    "0",
+    "1",
+    "-1",
+    "1e3",
+    "3.5",
+    "999999999999999999999",
+    "nan",
+    "rows=64",
+    "learning_rate=0.001",
+    "rows=[1]",
+    "rows=null",
+    "wingbeats=1e400",
+    "=1",
+    "a=",
+)
+"""Of a command line, in no order."""
 
 
 def settings(data: bytes) -> Any:
@@ -87,15 +140,18 @@ def page_numbers(data: bytes) -> Any:
     draw = Draw(data)
     known = {name: load_insect(name) for name in INSECTS}
     name = draw.one_of((OWN_WING, "hawkmoth", "dronefly")) if draw.byte() % 8 else draw.thing()
-    own = changed(["mine", *(control.start for control in WING_CONTROLS)], draw)
-    flyer = read_insect(name, own, known)
+    own: Any = ["mine", *(control.start for control in WING_CONTROLS)]
+    flyer = read_insect(name, changed(own, draw) if draw.byte() % 2 else own, known)
     controls = stroke_controls(flyer)
-    sent = [draw.number((one.low + one.high) / 2) if draw.byte() % 16 else draw.thing() for one in controls]
+    sent: list[Any] = [(one.low + one.high) / 2 for one in controls]
+    for _ in range(draw.byte() % 4):
+        place = draw.index(len(sent))
+        sent[place] = draw.number(sent[place]) if draw.byte() % 4 else draw.thing()
     stroke = read_stroke(sent if draw.byte() % 32 else draw.thing(), flyer)
     key = draw.thing()
     with contextlib.suppress(ValueError):
         _CASES.known(key)
-        raise Finding(f"the key {key!r} is known, which nobody gave out")
+        raise FindingError(f"the key {key!r} is known, which nobody gave out")
     return flyer, stroke, shown_stroke(stroke, flyer)
 
 
@@ -115,7 +171,7 @@ def page_answers(data: bytes) -> Any:
     told = [*numbers(case, stroke), *note(case), *(remarks(case, stroke) if draw.byte() % 8 == 0 else ())]
     text = json.dumps([part.to_plotly_json() for part in told], default=lambda part: part.to_plotly_json())
     if "NaN" in text or "Infinity" in text:
-        raise Finding(f"the page is told NaN or inf: {text[:300]}")
+        raise FindingError(f"the page is told NaN or inf: {text[:300]}")
     return json.loads(file_text(case, stroke))["strokes"]
 
 
@@ -131,7 +187,7 @@ def command_line(data: bytes) -> Any:
     except SystemExit as end:
         text = said.getvalue()
         if end.code not in (0, 2) or text.count("\n") > 1 or len(text) > 2 * LONGEST_LINE:
-            raise Finding(f"{shlex.join(words)!r} ends with {end.code} and says {text[:500]!r}") from None
+            raise FindingError(f"{shlex.join(words)!r} ends with {end.code} and says {text[:500]!r}") from None
         return None
 
 
@@ -181,6 +237,3 @@ def _parsed(name: str, parse: Any) -> argparse.ArgumentParser:
     if name not in _PARSERS:
         _PARSERS[name] = parse()
     return _PARSERS[name]
-
-
-SOME_PROBLEMS = tuple(PROBLEMS)

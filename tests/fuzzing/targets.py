@@ -27,7 +27,9 @@ class Target:
     longest: int = 256
 
 
-SPREAD = tuple(bytes((start + step * number) % 256 for number in range(96)) for start in range(8) for step in (0, 7, 37))
+SPREAD = tuple(
+    bytes((start + step * number) % 256 for number in range(96)) for start in range(8) for step in (0, 7, 37)
+)
 """Inputs that make various choices, for every target."""
 
 
@@ -43,9 +45,7 @@ TARGETS: dict[str, Target] = {
         corpus=[raw[1:] for raw in _raw([*seeds.stroke_documents(), {"a": [1, -2.5e-3, None, True, "\u00e9"]}])],
         longest=2000,
     ),
-    "strokes-json": Target(
-        call=files.strokes_json, share=20, corpus=_raw(seeds.stroke_documents()), longest=4000
-    ),
+    "strokes-json": Target(call=files.strokes_json, share=20, corpus=_raw(seeds.stroke_documents()), longest=4000),
     "strokes-csv": Target(call=files.strokes_csv, share=16, corpus=[RAW + seeds.STROKE_TABLE.encode()], longest=600),
     "strokes-judged": Target(call=files.judged_strokes, share=2),
     "wing-json": Target(call=files.wing, share=16, corpus=_raw(seeds.wing_documents()), longest=3000),

@@ -18,11 +18,11 @@ ROOT = Path(__file__).parents[2]
 OURS = tuple(str(ROOT / folder) for folder in ("flapenv", "agents"))
 LONGEST = 3 * LONGEST_LINE
 """Letters of an error: a path, a place in the file and what is wrong there, each cut at `LONGEST_LINE`."""
-SAYS_WHAT_IS_ALLOWED = ("allowed", "its fields are", "its keys are", "reload the page", "belongs to", "needs wing masses")
+SAYS_WHAT_IS_ALLOWED = ("allowed", "its fields are", "its keys are", "reload the page", "needs wing masses")
 """One of these is in every error."""
 
 
-class Finding(AssertionError):
+class FindingError(AssertionError):
     """An input that breaks the rule, which is a mistake of ours."""
 
 
@@ -51,21 +51,21 @@ def require_finite(value: Any, where: str = "value") -> None:
     """Refuse NaN and inf anywhere in what came back.
 
     Raises:
-        Finding: naming the place.
+        FindingError: naming the place.
     """
     if isinstance(value, Mapping):
         for key, one in value.items():
             require_finite(one, f"{where}[{key!r}]")
     elif isinstance(value, np.ndarray) and value.dtype.kind in "fc":
         if not np.isfinite(value).all():
-            raise Finding(f"{where} = {value!r} is not finite")
+            raise FindingError(f"{where} = {value!r} is not finite")
     elif isinstance(value, list | tuple | np.ndarray):
         for number, one in enumerate(value):
             require_finite(one, f"{where}[{number}]")
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         require_finite(vars(value), type(value).__name__)
     elif isinstance(value, float | np.floating) and not math.isfinite(value):
-        raise Finding(f"{where} = {value!r} is not finite")
+        raise FindingError(f"{where} = {value!r} is not finite")
 
 
 @contextlib.contextmanager
@@ -81,17 +81,17 @@ def judge(target: Callable[[bytes], Any], data: bytes) -> str:
     """Run a target: "accepted" or "refused".
 
     Raises:
-        Finding: where the input broke the rule, from what it raised.
+        FindingError: where the input broke the rule, from what it raised.
     """
     try:
         with strict_warnings():
             value = target(data)
-    except Finding:
+    except FindingError:
         raise
     except Exception as mistake:
         why = refused(mistake)
         if why is not None:
-            raise Finding(f"{why}: {type(mistake).__name__}: {str(mistake)[:500]!r}") from mistake
+            raise FindingError(f"{why}: {type(mistake).__name__}: {str(mistake)[:500]!r}") from mistake
         return "refused"
     require_finite(value)
     return "accepted"
