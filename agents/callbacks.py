@@ -5,7 +5,6 @@ import io
 import math
 import sys
 import time
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -48,43 +47,51 @@ class LearningCurve(BaseCallback):
     That is watched only: nothing is chosen by it. What watching costs is not counted as seconds of training.
     """
 
-    def __init__(self, out: Path, task: Task, budget: int) -> None:
-        """Write about `CURVE_POINTS` points over `budget` wingbeats to `out`, more closely at the beginning."""
+    def __init__(self, out: Path, task: Task, budget: int, state: Any = None) -> None:
+        """Write about `CURVE_POINTS` points over `budget` wingbeats to `out`, more closely at the beginning.
+
+        Args:
+            out: the run's folder; the file is written anew.
+            task: what the policy is watched at.
+            budget: of the training.
+            state: what `state` gave, to go on from there; None for the beginning.
+
+        Raises:
+            ValueError: for a state that is none.
+            OSError: if the file cannot be written.
+        """
         super().__init__()
         self.path, self.task = out / CURVE, task
         self.every, self.next = budget / CURVE_POINTS, 0.0
         self.rows: list[tuple[float, ...]] = []
         self._rewards: list[float] = []
-        self._started, self._before = time.monotonic(), 0.0
-        self._write(())
+        self._before, self._started, self._watched = 0.0, time.monotonic(), 0.0
+        self._ended: float | None = None
+        if state is not None:
+            self._restore(_checked_curve(state))
+        text = io.StringIO(newline="")
+        csv.writer(text).writerows([CURVE_COLUMNS, *self.rows])
+        write_text(self.path, text.getvalue())
 
     @property
     def seconds(self) -> float:
         """Spent training, in this process and those before it, without those spent watching."""
-        return self._before + time.monotonic() - self._started
+        until = time.monotonic() if self._ended is None else self._ended
+        return self._before + until - self._started - self._watched
+
+    def end(self) -> None:
+        """Training is over: `seconds` stays as it is."""
+        self._ended = time.monotonic()
 
     def state(self) -> dict[str, Any]:
         """What the curve goes on from, for JSON: NaN as None."""
         rows = [[None if math.isnan(value) else value for value in row] for row in self.rows]
         return {"seconds": self.seconds, "next": self.next, "rows": rows, "rewards": list(self._rewards)}
 
-    def restore(self, state: Any) -> None:
-        """Go on from what `state` gave, in the file, too.
-
-        Raises:
-            ValueError: for anything else.
-        """
-        checked = _checked_curve(state)
-        self._before, self.next = checked["seconds"], checked["next"]
-        self.rows = [tuple(math.nan if value is None else value for value in row) for row in checked["rows"]]
-        self._rewards = list(checked["rewards"])
-        self._write(self.rows)
-
-    def _write(self, rows: Sequence[tuple[float, ...]]) -> None:
-        """Write the file anew."""
-        text = io.StringIO(newline="")
-        csv.writer(text).writerows([CURVE_COLUMNS, *rows])
-        write_text(self.path, text.getvalue())
+    def _restore(self, state: dict[str, Any]) -> None:
+        self._before, self.next = state["seconds"], state["next"]
+        self.rows = [tuple(math.nan if value is None else value for value in row) for row in state["rows"]]
+        self._rewards = list(state["rewards"])
 
     def _on_training_start(self) -> None:
         self._started = time.monotonic()
@@ -109,7 +116,8 @@ class LearningCurve(BaseCallback):
         reward = float(np.mean(self._rewards))
         self._rewards.clear()
         row = (self.model.num_timesteps, round(seconds, 3), reward, mean, worst)
-        self._before -= time.monotonic() - began
+        if self._ended is None:
+            self._watched += time.monotonic() - began
         self.rows.append(row)
         with self.path.open("a", encoding="utf-8", newline="") as file:
             csv.writer(file).writerow(row)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from stable_baselines3.common.callbacks import BaseCallback
 
-SECONDS = 5.0
+CHECKPOINT_SECONDS = 5.0
 """Between two checkpoints, at least."""
 SHARE = 0.01
 """Of the time that is spent on them, at most."""
@@ -18,7 +18,9 @@ class Checkpoints(BaseCallback):
     machine's is set.
     """
 
-    def __init__(self, make: Callable[[], object], *, seconds: float = SECONDS, share: float = SHARE) -> None:
+    def __init__(
+        self, make: Callable[[], object], *, seconds: float = CHECKPOINT_SECONDS, share: float = SHARE
+    ) -> None:
         """Make checkpoints by calling `make`.
 
         Args:

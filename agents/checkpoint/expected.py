@@ -1,4 +1,4 @@
-"""What a checkpoint has to hold for a learner that was built from its config: names, shapes, types and whole numbers."""
+"""What a checkpoint has to hold for a learner built from its config: names, shapes, types and whole numbers."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

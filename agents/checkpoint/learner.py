@@ -205,9 +205,7 @@ def _moments(model: BaseAlgorithm) -> dict[str, np.ndarray]:
     }
 
 
-def _restore_optimizer(
-    optimizer: torch.optim.Optimizer, moments: Mapping[str, np.ndarray], rates: list[float]
-) -> None:
+def _restore_optimizer(optimizer: torch.optim.Optimizer, moments: Mapping[str, np.ndarray], rates: list[float]) -> None:
     """Give an optimiser its moments and its learning rates; all else is as the config has made it."""
     state: dict[int, dict[str, torch.Tensor]] = {}
     for name, array in moments.items():

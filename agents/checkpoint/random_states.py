@@ -18,7 +18,7 @@ def random_states(spaces: np.random.Generator) -> dict[str, Any]:
         spaces: the generator that random actions are sampled from.
     """
     version, numbers, gauss = random.getstate()
-    legacy: dict[str, Any] = np.random.get_state(legacy=False)  # type of NumPy's stubs is a union
+    legacy: dict[str, Any] = np.random.get_state(legacy=False)
     return {
         "python": {"version": version, "numbers": list(numbers), "gauss": gauss},
         "numpy": _plain(legacy),
@@ -27,7 +27,7 @@ def random_states(spaces: np.random.Generator) -> dict[str, Any]:
     }
 
 
-def restore_random_states(states: Mapping[str, Any], spaces: np.random.Generator) -> None:
+def restore_random_states(states: Any, spaces: np.random.Generator) -> None:
     """Let the generators go on from their states; as `random_states`.
 
     Raises:
@@ -41,7 +41,7 @@ def restore_random_states(states: Mapping[str, Any], spaces: np.random.Generator
         raise ValueError(f"states of random generators are not what was written: {problem}") from None
 
 
-def _set(states: Mapping[str, Any], spaces: np.random.Generator) -> None:
+def _set(states: Any, spaces: np.random.Generator) -> None:
     """Set all states, whatever comes of it."""
     python, legacy = states["python"], states["numpy"]
     random.setstate((python["version"], tuple(python["numbers"]), python["gauss"]))

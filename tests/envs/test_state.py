@@ -164,9 +164,7 @@ def test_what_is_seen_and_drawn_is_the_same(env_id: str, mode: str, steps: int) 
 
 @each_case
 @pytest.mark.parametrize("mode", ["SAME_STEP", "scalar"])
-def test_a_state_of_before_the_first_reset_is_one_too(
-    env_id: str, arguments: dict[str, Any], mode: str
-) -> None:
+def test_a_state_of_before_the_first_reset_is_one_too(env_id: str, arguments: dict[str, Any], mode: str) -> None:
     env, used = make(env_id, mode, **arguments), make(env_id, mode, **arguments)
     used.reset(seed=2)
     played(used, np.random.default_rng(0), 2)
