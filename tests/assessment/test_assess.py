@@ -203,8 +203,12 @@ def test_every_number_of_an_entry_is_what_its_key_says() -> None:
 
 
 def test_what_is_not_finite_is_refused(hawkmoth: Insect) -> None:
-    with np.errstate(over="ignore"), pytest.raises(ValueError, match=r"hawkmoth: Λ = .* are not finite"):
-        assess(hawkmoth, dataclasses.replace(hawkmoth.stroke, frequency=1e150))
+    def holed(alpha: Any) -> Any:  # tried at whole degrees, between which it is infinite
+        return np.sin(2 * alpha), np.where(np.abs(np.degrees(alpha) % 1 - 0.5) < 0.4, np.inf, 1.0)
+
+    known = dataclasses.replace(assess(hawkmoth), problem=HoverProblem(model=HoverModel(coefficients=holed)))
+    with pytest.raises(ValueError, match=r"hawkmoth: Λ = .* are not finite"):
+        assess_another(known, hawkmoth.stroke)
 
 
 def test_another_stroke_is_judged_as_afresh_but_for_other_models(insect: Insect) -> None:
