@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from flapenv.aero.accelerators import Accelerator, plate_kernel
+from flapenv.aero.accelerators import ACCELERATORS, Accelerator, plate_kernel
 from flapenv.aero.arrays import as_arrays, as_like
-from flapenv.aero.checks import record, shown
+from flapenv.aero.checks import record, require_name, shown
 from flapenv.case import HoverCase
 from flapenv.insects import Insect
 from flapenv.optimum import gap_charge
@@ -119,7 +119,7 @@ class HoverObjective:
             ImportError: where the accelerator is not installed.
         """
         self.problem, self.dtype, self.threads = problem, np.dtype(dtype), threads
-        self.kernel = plate_kernel(accelerator)
+        self.kernel = plate_kernel(require_name("accelerator", accelerator, ACCELERATORS))
         if accelerator != "numpy":
             self._require_use(accelerator)
         self.flyers = Flyers(insects, problem, gap_to=gap_to)

@@ -12,7 +12,7 @@ from safetensors.numpy import load as load_arrays
 from safetensors.numpy import save as arrays_as_bytes
 
 from agents.run_folder import write_atomically
-from flapenv.aero.checks import record
+from flapenv.aero.checks import one_line, record, shown
 from flapenv.read_json import read_object, require_file
 from flapenv.whole_file import json_text, remove_partial, write_text
 
@@ -80,7 +80,7 @@ def read_checkpoint(folder: Path) -> Checkpoint | None:
     path = folder / STATE
     state = read_object(path, mend=MEND, largest=LARGEST_STATE)
     if state.get("format") != FORMAT:
-        raise ValueError(f"{path}: format = {state.get('format')!r} is not known; allowed: {FORMAT!r}")
+        raise ValueError(f"{path}: format = {shown(state.get('format'))} is not known; allowed: {FORMAT!r}")
     if state.pop("sha256", None) != _digest(state):
         raise ValueError(f"{path} was changed since it was written: its sha256 is not its own; allowed: {MEND}")
     arrays = state.pop("arrays", None)
@@ -95,7 +95,7 @@ def _read_arrays(folder: Path, file: str, size: int, sha256: str) -> dict[str, n
     """The arrays of a file of this name, size and sha256."""
     path = folder / file
     if path.parent != folder or path.suffix != ".safetensors":
-        raise ValueError(f"{folder / STATE}: arrays in file {file!r} are not allowed; allowed: one beside it")
+        raise ValueError(f"{folder / STATE}: arrays in file {shown(file)} are not allowed; allowed: one beside it")
     require_file(path, str(path), MEND)
     found = path.stat().st_size
     if found != size:
@@ -106,7 +106,7 @@ def _read_arrays(folder: Path, file: str, size: int, sha256: str) -> dict[str, n
     try:
         return dict(load_arrays(content))
     except (SafetensorError, TypeError, KeyError, ValueError) as problem:  # KeyError: a dtype that NumPy does not have
-        raise ValueError(f"{path} holds no arrays: {problem}; allowed: {MEND}") from None
+        raise ValueError(f"{path} holds no arrays: {one_line(problem)}; allowed: {MEND}") from None
 
 
 def remove_checkpoint(folder: Path) -> None:

@@ -169,7 +169,9 @@ def _require_same_make(model: BaseAlgorithm, numbers: Mapping[str, Any]) -> None
     """Refuse the state of another learner, or of one for other rows and spaces."""
     for name, own in (("learner", type(model).__name__), ("spaces", _spaces(model))):
         if numbers.get(name) != own:
-            raise ValueError(f"{name} = {numbers.get(name)!r} is not allowed; allowed: {own!r}, as the config asks for")
+            raise ValueError(
+                f"{name} = {shown(numbers.get(name))} is not allowed; allowed: {own!r}, as the config asks for"
+            )
 
 
 def _weights(model: BaseAlgorithm) -> dict[str, torch.Tensor]:

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import torch
 
+from flapenv.aero.checks import one_line
+
 MERSENNE = "MT19937"
 """The generator behind `numpy.random`'s functions."""
 
@@ -38,7 +40,9 @@ def restore_random_states(states: Any, spaces: np.random.Generator) -> None:
         _set(states, spaces)
     except (AttributeError, IndexError, KeyError, OverflowError, RuntimeError, TypeError, ValueError) as problem:
         _set(before, spaces)
-        raise ValueError(f"states of random generators are not what was written: {problem}") from None
+        raise ValueError(
+            f"states of random generators are not allowed ({one_line(problem)}); allowed: those that were written"
+        ) from None
 
 
 def _set(states: Any, spaces: np.random.Generator) -> None:

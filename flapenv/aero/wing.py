@@ -92,7 +92,7 @@ class Wing:
             TypeError: for columns that are not real numbers of equal length.
             ValueError: for radii that do not rise from 0, negative chords, no area, NaN or inf.
         """
-        r = np.atleast_1d(np.asarray(require_real("radius", radius, high=HUGEST, unit="m")))
+        r = np.atleast_1d(np.asarray(require_real("radius", radius, -HUGEST, HUGEST, unit="m")))
         c = np.atleast_1d(np.asarray(require_real("chord", chord, 0.0, HUGEST, unit="m")))
         if r.shape != c.shape or r.ndim != 1 or r.size < 2:
             raise TypeError(f"radius and chord have shapes {r.shape}, {c.shape}; allowed: two columns of equal length")

@@ -153,7 +153,9 @@ def as_generator(random: Any) -> tuple[np.random.Generator | None, int | None]:
     except (KeyError, TypeError, ValueError, OverflowError):
         stands = False
     if not stands:
-        raise ValueError(f"state: random generator = {shown(wanted)} is not a state of {GENERATOR.__name__}")
+        raise ValueError(
+            f"state: random generator = {shown(wanted)} is not a state of {GENERATOR.__name__}; allowed: one of its own"
+        )
     return np.random.Generator(bits), seed
 
 

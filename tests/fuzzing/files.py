@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from safetensors.numpy import save as tensors_as_bytes
 
-from agents.commands.train import read_config
+from agents.commands.train import read_config, recipe
 from agents.policy_card import PolicyCard
 from agents.policy_file import load_policy
 from agents.presets import as_preset
@@ -134,9 +134,9 @@ def judged_strokes(data: bytes) -> Any:
 
 def config(data: bytes) -> Any:
     """`train.py --config FILE`, up to the training."""
-    name, seed, preset = read_config(_document("config.json", data, seeds.config_documents()))
-    made = TrainingConfig(preset=as_preset(preset), name=name, seed=seed)
-    return made.to_dict()
+    path = _document("config.json", data, seeds.config_documents())
+    told = read_config(path, str(path))
+    return TrainingConfig(preset=as_preset(recipe(told)), name=told["preset"], seed=told["seed"]).to_dict()
 
 
 def policy(data: bytes) -> Any:
@@ -147,9 +147,9 @@ def policy(data: bytes) -> Any:
     if how % 4 == RAW:
         content = draw.rest()
     elif how % 4 == 1:
-        content = tensors_as_bytes(_changed_tensors(tensors, draw))
+        content = tensors_as_bytes(changed_arrays(tensors, draw))
     elif how % 4 == 2:
-        content = _damaged_header(content, draw)
+        content = damaged_header(content, draw)
     card = {**card, "sha256": hashlib.sha256(content).hexdigest()}
     if how >= 128:
         card = changed(card, draw)
@@ -165,7 +165,7 @@ def policy(data: bytes) -> Any:
     return actions
 
 
-def _changed_tensors(tensors: dict[str, np.ndarray], draw: Draw) -> dict[str, np.ndarray]:
+def changed_arrays(tensors: dict[str, np.ndarray], draw: Draw) -> dict[str, np.ndarray]:
     """Tensors with one left out, renamed, reshaped, of another type, or with odd numbers."""
     made = dict(tensors)
     for _ in range(1 + draw.byte() % 3):
@@ -175,7 +175,7 @@ def _changed_tensors(tensors: dict[str, np.ndarray], draw: Draw) -> dict[str, np
             continue
         if how == 1:
             name = f"layers.{draw.byte()}.weight"
-        elif how == 2:
+        elif how == 2 and array.ndim:
             array = array[: draw.byte()]
         elif how == 3:
             with np.errstate(all="ignore"):
@@ -189,7 +189,7 @@ def _changed_tensors(tensors: dict[str, np.ndarray], draw: Draw) -> dict[str, np
     return made
 
 
-def _damaged_header(content: bytes, draw: Draw) -> bytes:
+def damaged_header(content: bytes, draw: Draw) -> bytes:
     """Weights whose header says something else."""
     size = int.from_bytes(content[:8], "little")
     header = changed(json.loads(content[8 : 8 + size]), draw)

@@ -143,10 +143,11 @@ def page_numbers(data: bytes) -> Any:
     own: Any = ["mine", *(control.start for control in WING_CONTROLS)]
     flyer = read_insect(name, changed(own, draw) if draw.byte() % 2 else own, known)
     controls = stroke_controls(flyer)
-    sent: list[Any] = [(one.low + one.high) / 2 for one in controls]
+    usual = [(one.low + one.high) / 2 for one in controls]
+    sent: list[Any] = list(usual)
     for _ in range(draw.byte() % 4):
         place = draw.index(len(sent))
-        sent[place] = draw.number(sent[place]) if draw.byte() % 4 else draw.thing()
+        sent[place] = draw.number(usual[place]) if draw.byte() % 4 else draw.thing()
     stroke = read_stroke(sent if draw.byte() % 32 else draw.thing(), flyer)
     key = draw.thing()
     with contextlib.suppress(ValueError):

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from fuzzing import environments, files, seeds, settings
+from fuzzing import checkpoints, environments, files, seeds, settings
 
 RAW = bytes([files.RAW])
 
@@ -41,38 +41,39 @@ def _raw(documents: Iterable[Any]) -> tuple[bytes, ...]:
 TARGETS: dict[str, Target] = {
     "json": Target(
         call=files.json_object,
-        share=25,
+        share=60,
         corpus=[raw[1:] for raw in _raw([*seeds.stroke_documents(), {"a": [1, -2.5e-3, None, True, "\u00e9"]}])],
         longest=2000,
     ),
-    "strokes-json": Target(call=files.strokes_json, share=20, corpus=_raw(seeds.stroke_documents()), longest=4000),
-    "strokes-csv": Target(call=files.strokes_csv, share=16, corpus=[RAW + seeds.STROKE_TABLE.encode()], longest=600),
-    "strokes-judged": Target(call=files.judged_strokes, share=2),
-    "wing-json": Target(call=files.wing, share=16, corpus=_raw(seeds.wing_documents()), longest=3000),
-    "planform-csv": Target(call=files.planform, share=16, corpus=[RAW + seeds.PLANFORM_TABLE.encode()], longest=400),
-    "config-json": Target(call=files.config, share=12, corpus=_raw(seeds.config_documents()), longest=3000),
-    "policy": Target(call=files.policy, share=12),
-    "settings": Target(call=settings.settings, share=16),
-    "training-config": Target(call=settings.training_config, share=10),
-    "insect": Target(call=settings.insect, share=16),
-    "problem": Target(call=settings.problem, share=16),
-    "page-numbers": Target(call=settings.page_numbers, share=16),
-    "page-answers": Target(call=settings.page_answers, share=2),
-    "command-line": Target(call=settings.command_line, share=6),
-    **{f"actions-{name}": Target(call=environments.actions(env), share=8) for name, env in environments.NAMES.items()},
+    "strokes-json": Target(call=files.strokes_json, share=12, corpus=_raw(seeds.stroke_documents()), longest=4000),
+    "strokes-csv": Target(call=files.strokes_csv, share=12, corpus=[RAW + seeds.STROKE_TABLE.encode()], longest=600),
+    "strokes-judged": Target(call=files.judged_strokes, share=0.3),
+    "wing-json": Target(call=files.wing, share=10, corpus=_raw(seeds.wing_documents()), longest=3000),
+    "planform-csv": Target(call=files.planform, share=8, corpus=[RAW + seeds.PLANFORM_TABLE.encode()], longest=400),
+    "config-json": Target(call=files.config, share=8, corpus=_raw(seeds.config_documents()), longest=3000),
+    "policy": Target(call=files.policy, share=6),
+    "checkpoint": Target(call=checkpoints.checkpoint, share=3),
+    "settings": Target(call=settings.settings, share=14),
+    "training-config": Target(call=settings.training_config, share=8),
+    "insect": Target(call=settings.insect, share=14),
+    "problem": Target(call=settings.problem, share=14),
+    "page-numbers": Target(call=settings.page_numbers, share=20),
+    "page-answers": Target(call=settings.page_answers, share=0.3),
+    "command-line": Target(call=settings.command_line, share=3),
+    **{f"actions-{name}": Target(call=environments.actions(env), share=5) for name, env in environments.NAMES.items()},
     **{
-        f"reset-{name}": Target(call=environments.reset_options(env), share=6)
+        f"reset-{name}": Target(call=environments.reset_options(env), share=4)
         for name, env in environments.NAMES.items()
     },
     **{
-        f"arguments-{name}": Target(call=environments.arguments(env), share=1)
+        f"arguments-{name}": Target(call=environments.arguments(env), share=0.5)
         for name, env in environments.NAMES.items()
     },
     **{
-        f"insects-{name}": Target(call=environments.insects_flown(env), share=0.1 if name == "hover" else 1)
+        f"insects-{name}": Target(call=environments.insects_flown(env), share=0.03 if name == "hover" else 0.5)
         for name, env in environments.NAMES.items()
     },
-    "problems-hover": Target(call=environments.problems_flown(environments.NAMES["hover"]), share=0.1),
-    "problems-waveform": Target(call=environments.problems_flown(environments.NAMES["waveform"]), share=1),
+    "problems-hover": Target(call=environments.problems_flown(environments.NAMES["hover"]), share=0.03),
+    "problems-waveform": Target(call=environments.problems_flown(environments.NAMES["waveform"]), share=0.5),
 }
 """By name, what `python -m tests.fuzzing --target NAME` knows."""
