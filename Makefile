@@ -6,10 +6,14 @@ STAMP := $(VENV)/.installed
 FLOOR := .venv-floor
 ZOO := .venv-zoo
 RLLIB := .venv-rllib
+AUDIT := .venv-audit
+FUZZ_INPUTS ?= 1000000
 ENV_ID ?= flapenv/Hover-v0
 ZOO_ALGO ?= ppo
+# pip builds the package in an environment of its own, where it hears of versions by this variable alone.
+export PIP_CONSTRAINT := $(CURDIR)/.ci/requirements-build.txt
 
-.PHONY: help train test test-fast test-floor test-browser lint format bench benchmark docs validate clients client-ppo client-zoo client-rllib clean
+.PHONY: help train test test-fast test-floor test-browser lint format bench benchmark docs validate fuzz audit clients client-ppo client-zoo client-rllib clean
 
 help:  ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -17,6 +21,15 @@ help:  ## Show the targets
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[dev]'
+	@touch $@
+
+$(VENV)/.fuzz: $(STAMP)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[fuzz]'
+	@touch $@
+
+$(AUDIT)/.installed: .ci/requirements-audit.txt
+	$(PYTHON) -m venv $(AUDIT)
+	$(AUDIT)/bin/python -m pip install --quiet --requirement .ci/requirements-audit.txt
 	@touch $@
 
 $(FLOOR)/.installed: pyproject.toml constraints-floor.txt
@@ -46,6 +59,12 @@ test-browser: $(STAMP)  ## Report and explorer in Chromium, which is installed w
 		|| { apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -y -q chromium; } \
 		|| { echo "make test-browser: no Chromium, and apt-get could not install it; mend: install the package chromium as root" >&2; exit 2; }
 	$(BIN)/python -m pytest -m browser $(ARGS)
+
+fuzz: $(VENV)/.fuzz  ## A coverage-guided fuzzer on everything that reads from outside; FUZZ_INPUTS in all (half an hour)
+	$(BIN)/python -m tests.fuzzing --inputs $(FUZZ_INPUTS) $(ARGS)
+
+audit: $(AUDIT)/.installed  ## Known holes of what is installed, from PyPI's advisories; needs the network
+	$(AUDIT)/bin/pip-audit --requirement constraints.txt --no-deps --disable-pip --strict $(ARGS)
 
 lint: $(STAMP)  ## ruff (lint and format) and mypy
 	$(BIN)/ruff check .
@@ -84,4 +103,4 @@ client-rllib: $(RLLIB)/.installed  ## One of them: RLlib, one process for the na
 		--vectorize-mode vector_entry_point --env-runners 0 $(ARGS)
 
 clean:  ## Remove the virtual environments, caches and the built site, not the runs
-	rm -rf docs/_build $(VENV) $(FLOOR) $(ZOO) $(RLLIB) .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf docs/_build $(VENV) $(FLOOR) $(AUDIT) $(ZOO) $(RLLIB) .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -3,6 +3,7 @@
 import json
 import math
 import pickle
+from typing import Any
 
 import numpy as np
 import pytest
@@ -116,3 +117,28 @@ def test_unknown_problems_are_refused() -> None:
         as_problem("free")
     with pytest.raises(TypeError, match="problem = 3"):
         as_problem(3)
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        (
+            {"box": {"frequency": "\n" * 2000, "frequency_ratio": (1, 1)}},
+            "both bound the frequency; allowed: one of them",
+        ),
+        ({"box": {"pitch_shape": [1.0, [1.0, [2.0]]]}}, "bounds of pitch_shape = .* are not allowed"),
+        ({"box": {"pitch_shape": [1.0, ["a", [2.0] * 4000]]}}, "bounds of pitch_shape = .* are not allowed"),
+        ({"name": ["x"] * 4000}, "name = .* is not allowed; allowed: a non-empty string"),
+    ],
+)
+def test_odd_values_of_any_length_are_told_in_one_short_line(fields: dict[str, Any], said: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=said) as caught:
+        HoverProblem(**fields)
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize("kind", [{"air_density": 1e16}, {"gravity": 1e-16}, {"section_lift_slope": 1e300}])
+def test_air_of_numbers_only_is_refused(kind: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=r"is not allowed; allowed: finite, in \[1e-15, 1e\+15\]"):
+        HoverProblem(model=kind)

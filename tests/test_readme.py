@@ -42,6 +42,8 @@ def test_every_make_target_a_reader_needs_is_named() -> None:
         "test-floor",
         "test-browser",
         "docs",
+        "fuzz",
+        "audit",
         "clients",
         "lint",
         "bench",

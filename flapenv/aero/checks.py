@@ -70,7 +70,7 @@ def record(cls: type[T]) -> type[T]:
 def allowed(name: object, names: Iterable[str]) -> str:
     """The end of an error message: what may stand in the place of `name`, and the nearest guess."""
     names = list(names)
-    near = difflib.get_close_matches(str(name)[:LONGEST_SHOWN], names, n=1)
+    near = difflib.get_close_matches(name[:LONGEST_SHOWN] if isinstance(name, str) else shown(name), names, n=1)
     guess = f"; did you mean {near[0]!r}?" if near else ""
     return f"allowed: {', '.join(names)}{guess}"
 

@@ -15,8 +15,8 @@ from flapenv.aero.quadrature import gauss_rule, graded_rule
 
 R1_HAT_LIMIT = 0.929 ** (1 / 0.268)
 """Largest r̂₁ for which Ellington's correlation leaves a spread of area, r̂₂ > r̂₁ (here 0.7597)."""
-LEAST_R1_HAT, LARGEST_R1_HAT = 1e-3, R1_HAT_LIMIT - 1e-6
-"""Nearer to 0 or to the limit the exponents vanish, and with them every rule of integration."""
+LEAST_R1_HAT, LARGEST_R1_HAT = 1e-3, 0.759
+"""Nearer to 0 or to the limit the exponents vanish or grow without end, and no rule of integration is left."""
 FUNCTION_NODES = 256
 """Nodes of the integrals over a planform that is given as a function."""
 LARGEST_GAUSS_RULE = 24
@@ -45,7 +45,7 @@ class BetaPlanform:
     """Ellington's beta planform, ĉ = r̂^(p-1) (1-r̂)^(q-1)/B(p, q), by its first moment alone (Ellington 1984).
 
     Attributes:
-        r1_hat: r̂₁ in [0.001, 0.7597], where the exponents are positive; a scalar, array or tensor [-].
+        r1_hat: r̂₁ in [0.001, 0.759], where the exponents are positive; a scalar, array or tensor [-].
 
     Raises:
         TypeError: if it is not real.

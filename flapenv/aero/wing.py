@@ -26,7 +26,7 @@ class Wing:
     Attributes:
         length: R, from the root to the tip [m].
         mean_chord: c̄ [m].
-        r1_hat: r̂₁, radius of the centre of area over R, in [0.001, 0.7597]; any planform but beta reports its own.
+        r1_hat: r̂₁, radius of the centre of area over R, in [0.001, 0.759]; any planform but beta reports its own.
         planform: a `TabulatedPlanform` (or the dict of one) or `FunctionPlanform`; None for the beta planform.
         mass: of one wing, spread evenly over its area [kg]; None where inertia is not asked for.
         pitch_axis: x̂₀, the axis it pitches about, behind the leading edge [chords], in [0, 1].

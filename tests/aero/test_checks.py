@@ -91,3 +91,8 @@ def test_of_much_the_ends_are_shown() -> None:
     with pytest.raises(ValueError, match=r"name = 'aaa.* is unknown; allowed: b") as caught:
         require_name("name", "a" * 10**6, ["b"])
     assert len(str(caught.value)) < 200
+
+
+def test_a_value_that_python_does_not_write_is_still_told() -> None:
+    with pytest.raises(ValueError, match="x = a int that cannot be shown is unknown; allowed: a"):
+        require_name("x", 10**5000, ["a"])

@@ -243,3 +243,17 @@ def test_a_wing_that_is_a_class_or_a_word_has_no_induced_power_factor() -> None:
     spike = Wing(length=3, mean_chord=1, planform=TabulatedPlanform(r_hat=[0, 0.9, 1], chord=[0, 0, 1]))
     with pytest.raises(ValueError, match="terms = 1 are too few"):
         k_ind(spike, terms=1)
+
+
+@pytest.mark.parametrize("r1_hat", [5e-324, 1e-300, 1e-4, 0.75973])
+def test_a_beta_planform_whose_exponents_vanish_or_blow_up_is_refused(r1_hat: float) -> None:
+    with pytest.raises(ValueError, match=r"r1_hat = .* is not allowed; allowed: finite, in \[0.001, 0.759\]"):
+        Wing(length=1, mean_chord=0.3, r1_hat=r1_hat)
+    for end in (1e-3, 0.759):
+        assert np.isfinite(Wing(length=1, mean_chord=0.3, r1_hat=end).shape.strips(8)).all()
+
+
+@pytest.mark.parametrize("radius", [[0, -1e308, 1e-300], [0, 5e-324], [0, 1e16], [0, -1e15, 1e-15]])
+def test_radii_of_numbers_only_are_refused(radius: list[float]) -> None:
+    with pytest.raises(ValueError, match=r"is not allowed; allowed|does not cover the span|does not exceed"):
+        Wing.from_table(radius, [1.0] * len(radius))

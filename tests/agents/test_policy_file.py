@@ -256,3 +256,29 @@ def test_an_environment_with_other_spaces_is_refused() -> None:
         card.require_fit(HoverVectorEnv(2, insect="hawkmoth", problem="fixed-frequency"))
     with pytest.raises(ValueError, match=r"actions of shape \(5,\) do not fit"):
         card.require_fit(HoverVectorEnv(2, problem={"box": {"pitch_phase": np.pi / 2}}))
+
+
+def test_a_header_with_control_characters_is_told_in_one_printable_line(saved: Path) -> None:
+    content = saved.read_bytes()
+    size = int.from_bytes(content[:HEADER], "little")
+    replace_weights(
+        saved, content[:HEADER] + content[HEADER : HEADER + size].replace(b"F32", b"\\n\x1b") + content[HEADER + size :]
+    )
+    with pytest.raises(ValueError, match=r"holds no safetensors: .*; allowed: what `save_policy` wrote") as caught:
+        load_policy(saved)
+    assert str(caught.value).isprintable()
+
+
+def test_weights_that_are_not_finite_are_told_with_what_is_allowed(saved: Path) -> None:
+    tensors = make_actor().to_tensors()
+    tensors["layers.1.weight"] = np.full_like(tensors["layers.1.weight"], np.nan)
+    replace_weights(saved, tensors_as_bytes(tensors))
+    refused(saved, "layers.1.weight holds 192 numbers that are not finite, the first nan; allowed: finite ones")
+
+
+def test_a_card_with_endless_values_is_told_in_one_short_line(saved: Path) -> None:
+    edit_card(saved, algorithm=["PPO\n"] * 4000)
+    with pytest.raises(ValueError, match=r"algorithm = .* is not allowed; allowed: a text") as caught:
+        load_policy(saved)
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 500 + len(str(saved))

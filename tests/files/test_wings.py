@@ -193,7 +193,7 @@ def with_stroke(**changes: Any) -> dict[str, Any]:
         (with_wing(mean_chord=1e-6), r"mean_chord = 1e-06 is .* in \[1e-05, 1\] m; lengths are in metres"),
         (with_wing(length=0.01826, mean_chord=0.0519), "length/mean_chord = 0.3518 .*exchanged"),
         (with_wing(mean_chord=0.001), r"length/mean_chord = 51.9 is not allowed.*allowed: 1 to 20$"),
-        (with_wing(r1_hat=0.9), r"wing: r1_hat = 0.9 is not allowed; allowed: finite, in \[0.001, 0.7597"),
+        (with_wing(r1_hat=0.9), r"wing: r1_hat = 0.9 is not allowed; allowed: finite, in \[0.001, 0.759\]"),
         (with_wing(r1_hat=0.7), r"r1_hat = 0.7 is not allowed; allowed: finite, in \[0.38, 0.65\]"),
         (with_wing(r1_hat=None), "wing: Wing needs r1_hat"),
         (with_wing(lenght=0.05), "wing: Wing has no field 'lenght'.*did you mean 'length'"),

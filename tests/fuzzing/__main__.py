@@ -26,6 +26,7 @@ def parser() -> argparse.ArgumentParser:
     )
     made.add_argument("--inputs", type=int, default=1_000_000, metavar="N", help="in all (default 1,000,000)")
     made.add_argument("--target", action="append", metavar="NAME", help="only this one; repeatable")
+    made.add_argument("--together", action="store_true", help="all targets in one process, for a short run")
     made.add_argument("--seconds", type=float, default=MOST_SECONDS, metavar="S", help="of a target at most")
     made.add_argument("--seed", type=int, default=1, metavar="N", help="of the fuzzer's draws (default 1)")
     made.add_argument("--out", type=Path, default=OUT, metavar="DIR", help="findings and corpora (default runs/fuzz)")
@@ -39,18 +40,18 @@ def main() -> int:
     options = parser().parse_args()
     if options.worker:
         work(options.target[0], options.inputs, options.seconds, options.seed, options.out)
-    from fuzzing.targets import TARGETS
+    from fuzzing.targets import TARGETS, TOGETHER, target_of
     from fuzzing.verdict import judge
 
-    unknown = [name for name in options.target or () if name not in TARGETS]
+    unknown = [name for name in options.target or () if name not in (*TARGETS, TOGETHER)]
     if unknown:
         print(f"target {unknown[0]!r} is unknown; allowed: {', '.join(TARGETS)}", file=sys.stderr)
         return 2
-    names = options.target or list(TARGETS)
+    names = options.target or ([TOGETHER] if options.together else list(TARGETS))
     if options.replay is not None:
-        print(judge(TARGETS[names[0]].call, options.replay.read_bytes()))
+        print(judge(target_of(names[0]).call, options.replay.read_bytes()))
         return 0
-    shares = {name: TARGETS[name].share for name in names}
+    shares = {name: target_of(name).share for name in names}
     begun, total, broken = time.monotonic(), 0, 0
     print(f"{'target':20} {'inputs':>9} {'accepted':>9} {'seconds':>8} {'/s':>7} {'findings':>8}")
     for name in names:
@@ -93,11 +94,11 @@ def work(name: str, count: int, seconds: float, seed: int, out: Path) -> None:
     import atheris
 
     with atheris.instrument_imports(include=["flapenv", "agents"], enable_loader_override=False):
-        from fuzzing.targets import SPREAD, TARGETS
+        from fuzzing.targets import SPREAD, target_of
     from fuzzing.files import folder as scratch
     from fuzzing.verdict import FindingError, judge
 
-    target, folder = TARGETS[name], out / name
+    target, folder = target_of(name), out / name
     corpus = folder / "corpus"
     corpus.mkdir(parents=True, exist_ok=True)
     for one in (*SPREAD, *target.corpus):

@@ -45,6 +45,7 @@ def stroke_documents() -> list[Any]:
 def wing_documents() -> list[Any]:
     """Wing files: three numbers, a planform in metres, one relative, one in a file beside."""
     robot = json.loads((ROOT / "docs/examples/robot.json").read_text(encoding="utf-8"))
+    robot["wing"]["planform_file"] = "planform.csv"  # beside it, as in `files.wing`
     insect = load_insect("bumblebee")
     made = json.loads(wing_to_text(WingFile(insect=as_own(insect), limits={"frequency": (100.0, 200.0)})))
     table = {"planform": {"radius": list(TABLE_RADII), "chord": list(TABLE_CHORDS)}, "mass": 1e-5}

@@ -1,5 +1,6 @@
 """The table of targets: what is fuzzed, its share of the inputs, and what the fuzzers begin with."""
 
+import bisect
 import json
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -77,3 +78,28 @@ TARGETS: dict[str, Target] = {
     "problems-waveform": Target(call=environments.problems_flown(environments.NAMES["waveform"]), share=0.5),
 }
 """By name, what `python -m tests.fuzzing --target NAME` knows."""
+
+TOGETHER = "together"
+"""All targets as one, the first two bytes of an input saying which; slow ones come as seldom as their share says."""
+
+
+def target_of(name: str) -> Target:
+    """A target by name, or all together."""
+    return _together() if name == TOGETHER else TARGETS[name]
+
+
+def _together() -> Target:
+    """One target that is all of them."""
+    names, shares = list(TARGETS), [target.share for target in TARGETS.values()]
+    ends = [sum(shares[: number + 1]) / sum(shares) for number in range(len(names))]
+
+    def call(data: bytes) -> Any:
+        place = int.from_bytes(data[:2].ljust(2, b"\0"), "big") / 65536
+        return TARGETS[names[bisect.bisect_right(ends, place)]].call(data[2:])
+
+    corpus = [
+        int(65536 * (end - share / sum(shares) / 2)).to_bytes(2, "big") + one
+        for end, share, target in zip(ends, shares, TARGETS.values(), strict=True)
+        for one in (*SPREAD[:3], *list(target.corpus)[:2])
+    ]
+    return Target(call=call, share=1, corpus=corpus, longest=4000)

@@ -67,3 +67,19 @@ def test_an_unknown_task_is_named() -> None:
 )
 def test_settings_of_a_command_line_are_read_as_what_they_are(text: str, pair: tuple[str, object]) -> None:
     assert setting_of(text) == pair
+
+
+@pytest.mark.parametrize("text", ["=\x1b[2J\n", "a=", "a" * 5000])
+def test_a_setting_of_another_form_is_told_in_one_short_line(text: str) -> None:
+    with pytest.raises(ValueError, match=r"^--set .* is not allowed; allowed: NAME=VALUE$") as caught:
+        setting_of(text)
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 200
+
+
+def test_a_setting_of_another_kind_is_told_in_one_short_line() -> None:
+    for name in ("rows", "learning_rate", "first_mean", "x" * 5000):
+        with pytest.raises((TypeError, ValueError), match="allowed") as caught:
+            PRESETS[DEFAULT_PRESET].changed({}, {name: ["\n"] * 5000})
+        assert str(caught.value).isprintable()
+        assert len(str(caught.value)) < 1000
