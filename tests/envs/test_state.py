@@ -27,15 +27,15 @@ VARIANTS: dict[str, tuple[dict[str, Any], ...]] = {
     "flapenv/Hover-v0": (
         {"reward": "vector", "dtype": "float64"},
         {"insect": "random-wing", "pool_size": 16},
-        {"problem": "inertial", "reward": "vector"},
+        {"problem": "profile-drag", "insect": "hawkmoth"},
     ),
     "flapenv/HoverAdapt-v0": ({"references": False, "dtype": "float64"}, {"beats": 20}),
 }
 """Further arguments that change what is kept or how a beat is computed."""
 CASES = [(env_id, {}) for env_id in ENV_IDS] + [(env_id, own) for env_id, all_ in VARIANTS.items() for own in all_]
-NOT_KEPT = {"_now", "_now_cast", "_results", "_sines"}
-"""Made again before they are read: the present conditions of HoverAdapt at the beat that they change, and the plain
-numbers of Hover's last beat."""
+NOT_KEPT = {"_now", "_now_cast", "_results", "_sines", "_bounds"}
+"""Made again before they are read: the present conditions of HoverAdapt at the beat that they change, the plain numbers
+of Hover's last beat, and the bounds of coordinates in a type that was asked for."""
 Env = BatchEnv | SingleEnv
 
 
@@ -120,7 +120,7 @@ def parts(value: Any, where: str, seen: set[int]) -> Iterator[tuple[str, Any]]:
 
 def all_parts(env: Env) -> dict[str, Any]:
     """Copies of all that an environment consists of."""
-    return {where: copy.deepcopy(value) for where, value in parts(env, "env", set())}
+    return {where: copy.deepcopy(value) for where, value in sorted(parts(env, "env", set()), key=lambda part: part[0])}
 
 
 each_case = pytest.mark.parametrize(("env_id", "arguments"), CASES, ids=[f"{name} {own or ''}" for name, own in CASES])
