@@ -38,7 +38,7 @@ class EnvState:
 
 def kept_arrays(owner: object) -> dict[str, np.ndarray]:
     """Copies of all that an object keeps, by name; flags as arrays of no axes."""
-    return {name: np.array(value) for name, value in _leaves("", owner)}
+    return {name: np.array(value, order="C") for name, value in _leaves("", owner)}
 
 
 def checked_arrays(
