@@ -155,7 +155,9 @@ def require_numbers(name: str, array: Any) -> None:
         raise TypeError(f"{name} is of type {kind}; allowed: an array of float32")
     bad = array[~np.isfinite(array)]
     if bad.size:
-        raise ValueError(f"{name} holds {bad.size} numbers that are not finite, the first {bad[0]}; allowed: finite ones")
+        raise ValueError(
+            f"{name} holds {bad.size} numbers that are not finite, the first {bad[0]}; allowed: finite ones"
+        )
 
 
 def kept(array: np.ndarray) -> np.ndarray:

@@ -282,3 +282,9 @@ def test_a_card_with_endless_values_is_told_in_one_short_line(saved: Path) -> No
         load_policy(saved)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 500 + len(str(saved))
+
+
+def test_a_run_that_was_killed_has_no_policy_yet_and_is_told_how_it_gets_one(tmp_path: Path) -> None:
+    (tmp_path / "checkpoint").mkdir()
+    with pytest.raises(FileNotFoundError, match=f"holds no policy.safetensors; .*goes on with --resume {tmp_path}"):
+        load_policy(tmp_path)

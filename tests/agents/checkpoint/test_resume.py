@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import torch
 
+import agents.learning
 import agents.training
 from agents.checkpoint import Checkpoint, Checkpoints, read_checkpoint, write_checkpoint
 from agents.predictor import Predictor
@@ -56,7 +57,7 @@ def killed_at(monkeypatch: pytest.MonkeyPatch) -> Callable[[int | None], None]:
             if made == last:
                 raise KilledError
 
-        monkeypatch.setattr(agents.training, "write_checkpoint", write)
+        monkeypatch.setattr(agents.learning, "write_checkpoint", write)
 
     return set_end
 
@@ -116,7 +117,7 @@ def test_ctrl_c_keeps_the_policy_and_the_checkpoint_and_the_run_goes_on_to_its_e
     asked = config("hover-ppo")
     quietly(asked, tmp_path / "whole")
     killed_at(None)
-    write, made = agents.training.write_checkpoint, []
+    write, made = agents.learning.write_checkpoint, []
 
     def interrupt(folder: Path, checkpoint: Checkpoint) -> None:
         write(folder, checkpoint)
@@ -124,7 +125,7 @@ def test_ctrl_c_keeps_the_policy_and_the_checkpoint_and_the_run_goes_on_to_its_e
         if len(made) == 6:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(agents.training, "write_checkpoint", interrupt)
+    monkeypatch.setattr(agents.learning, "write_checkpoint", interrupt)
     stopped = train(asked, tmp_path / "cut", progress=False, report=False)
     assert stopped.interrupted
     assert (tmp_path / "cut" / "policy.safetensors").exists()
@@ -134,7 +135,7 @@ def test_ctrl_c_keeps_the_policy_and_the_checkpoint_and_the_run_goes_on_to_its_e
     assert learned(tmp_path / "cut") == learned(tmp_path / "whole")
 
 
-@pytest.mark.parametrize("step", ["save_actor", "save_results", "draw_pictures", "remove_checkpoint"])
+@pytest.mark.parametrize("step", ["save_results", "draw_pictures", "remove_checkpoint"])
 def test_a_run_killed_while_it_is_judged_and_written_is_judged_and_written_again(
     step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
