@@ -80,7 +80,13 @@ def typed(preset: str, seed: int, arguments: Mapping[str, Any], settings: Mappin
 
 
 def run_of(
-    name: str, group: str, preset: str, seed: int, arguments: Mapping[str, Any], settings: Mapping[str, Any], base: Preset
+    name: str,
+    group: str,
+    preset: str,
+    seed: int,
+    arguments: Mapping[str, Any],
+    settings: Mapping[str, Any],
+    base: Preset,
 ) -> SweepRun:
     """A run of a registered preset with other arguments and settings.
 

@@ -1,4 +1,4 @@
-"""The folder of a sweep: its plan, its lock, and what of it is finished, which the run folders tell and nothing else."""
+"""The folder of a sweep: its plan, and its lock. What of it is finished the run folders tell, and nothing else."""
 
 import contextlib
 import shutil
@@ -56,19 +56,24 @@ def opened(storage: Path, plan: SweepPlan) -> Iterator[None]:
     except OSError as mistake:
         raise type(mistake)(f"--storage {storage} cannot be made ({mistake}); allowed: a folder that can") from None
     if not (storage / PLAN).exists() and any(one.name != ".lock" for one in storage.iterdir()):
-        raise FileExistsError(f"--storage {storage} holds files but no {PLAN}; allowed: a sweep's folder, or an empty one")
+        raise FileExistsError(
+            f"--storage {storage} holds files but no {PLAN}; allowed: a sweep's folder, or an empty one"
+        )
     with contextlib.ExitStack() as held:
         try:
             held.enter_context(locked(storage))
         except BlockingIOError:
             raise
         except OSError as mistake:
-            raise type(mistake)(f"--storage {storage} cannot be written ({mistake}); allowed: a folder that can") from None
+            raise type(mistake)(
+                f"--storage {storage} cannot be written ({mistake}); allowed: a folder that can"
+            ) from None
         if (storage / PLAN).exists():
             differs = differences(plan.to_dict(), read_plan(storage).to_dict())
             if differs:
                 raise ValueError(
-                    f"--storage {storage} holds another sweep: {'; '.join(differs)}; allowed: the same, or another folder"
+                    f"--storage {storage} holds another sweep: {'; '.join(differs)}; allowed: the same, or "
+                    "another folder"
                 )
         write_json(storage / PLAN, {"plan": plan.to_dict()})
         remove_ray(storage)

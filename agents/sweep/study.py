@@ -89,8 +89,8 @@ class Study:
             raise
         except Exception as mistake:  # whatever Optuna makes of lines that it did not write
             raise ValueError(
-                f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {mistake}; allowed: the file "
-                "as it was written, or another --storage"
+                f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {mistake}; allowed: the "
+                "file as it was written, or another --storage"
             ) from None
 
     def _raw(self) -> list[FrozenTrial]:
@@ -112,9 +112,7 @@ class Study:
 
     def _going(self, raw: list[FrozenTrial]) -> list[int]:
         """Numbers of trials that have not ended."""
-        return [
-            number for number, one in enumerate(raw) if one.state not in ENDED and number not in self._given_up
-        ]
+        return [number for number, one in enumerate(raw) if one.state not in ENDED and number not in self._given_up]
 
     def batch(self) -> list[Trial]:
         """The trials that are to be run now: those a kill left, or settings chosen anew."""
