@@ -72,6 +72,10 @@ class GradientAgent(BaseAlgorithm):
         assert isinstance(made, HoverPolicy)
         self.policy = made.to(self.device)
 
+    def _get_torch_save_params(self) -> tuple[list[str], list[str]]:
+        """What Stable-Baselines3's files and checkpoints keep: the networks and what Adam remembers."""
+        return ["policy", "policy.optimizer"], []
+
     def learn(
         self,
         total_timesteps: int,

@@ -1,19 +1,22 @@
 """Where a run keeps what it learned: names of its files, written so that a crash leaves the old file or the new one."""
 
+import contextlib
 import os
 import platform
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib import metadata
 from pathlib import Path
 
+from agents.folder_lock import locked
 from flapenv.aero.checks import one_line
-from flapenv.whole_file import whole_file
+from flapenv.whole_file import remove_partial, whole_file
 
 CONFIG, RESULTS, POLICY, CURVE = "config.json", "results.json", "policy.zip", "curve.csv"
+CHECKPOINT = "checkpoint"
 POLICY_TENSORS, POLICY_CARD = "policy.safetensors", "policy.json"
 CURVE_PICTURE, RESULT_PICTURE, REPORT, TENSORBOARD = "learning_curve.png", "learned.png", "report.html", "tensorboard"
 PICTURES = (CURVE_PICTURE, RESULT_PICTURE, REPORT)
-FILES = (CONFIG, RESULTS, POLICY, POLICY_TENSORS, POLICY_CARD, CURVE, *PICTURES, TENSORBOARD)
+FILES = (CONFIG, RESULTS, CHECKPOINT, POLICY, POLICY_TENSORS, POLICY_CARD, CURVE, *PICTURES, TENSORBOARD)
 RUNS = Path("runs")
 PACKAGES = ("flapenv", "gymnasium", "numpy", "scipy", "sb3-contrib", "stable-baselines3", "torch")
 
@@ -39,6 +42,32 @@ def open_run_folder(out: Path | None, name: str) -> Path:
     return out
 
 
+@contextlib.contextmanager
+def locked_run_folder(out: Path | None, name: str, *, resume: bool = False) -> Iterator[Path]:
+    """A run's folder that no other run can write into meanwhile.
+
+    Args:
+        out: as `open_run_folder`.
+        name: of the run.
+        resume: whether it may hold a run, which will go on; what that left half-written is removed.
+
+    Raises:
+        BlockingIOError: if another process trains into it.
+        FileExistsError: if it holds a run that is not to go on.
+        OSError: if it cannot be made or written.
+    """
+    if resume and out is None:
+        raise ValueError("out = None is not allowed with resume; allowed: the folder of the run")
+    folder = out if resume and out is not None else open_run_folder(out, name)
+    require_writable(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder):
+        if not resume:
+            require_free_folder(folder)  # another may have come first
+        remove_partial(folder)
+        yield folder
+
+
 def require_free_folder(out: Path) -> None:
     """Refuse a folder that could not be made or written, or holds a run; nothing is made.
 
@@ -50,6 +79,16 @@ def require_free_folder(out: Path) -> None:
     taken = [name for name in FILES if (out / name).exists()]
     if taken:
         raise FileExistsError(f"--out {out} holds {', '.join(taken)} already; allowed: a folder without a run in it")
+    require_writable(out)
+
+
+def require_writable(out: Path) -> None:
+    """Refuse a folder that could not be made or written.
+
+    Raises:
+        NotADirectoryError: if it is a file, or lies in one.
+        OSError: if it cannot be written.
+    """
     nearest = next((one for one in (out, *out.absolute().parents) if one.exists()), Path.cwd())
     if not nearest.is_dir():
         raise NotADirectoryError(f"--out {out}: {nearest} is a file; allowed: a folder")

@@ -1,9 +1,7 @@
 """Train one policy by a preset, keep it, and judge it against its task's reference."""
 
 import dataclasses
-import json
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -13,28 +11,41 @@ from stable_baselines3.common.callbacks import CallbackList
 from stable_baselines3.common.logger import configure
 
 from agents.actor_of import actor_of
-from agents.callbacks import Annealing, Checkpoints, LearningCurve, ProgressBar
+from agents.callbacks import Annealing, LearningCurve, ProgressBar
+from agents.checkpoint import (
+    CHECKPOINT_SECONDS,
+    Checkpoint,
+    Checkpoints,
+    learner_state,
+    read_checkpoint,
+    remove_checkpoint,
+    restore_learner,
+    write_checkpoint,
+)
 from agents.curve_picture import draw_learning_curve
 from agents.interrupts import one_interrupt
 from agents.policy_card import PolicyCard
 from agents.policy_file import save_policy
 from agents.presets import Preset
 from agents.remembering import flown
+from agents.resuming import finished_result, is_finished, keep_config
 from agents.run_folder import (
-    CONFIG,
+    CHECKPOINT,
     CURVE_PICTURE,
+    POLICY,
     POLICY_TENSORS,
     RESULT_PICTURE,
     RESULTS,
     TENSORBOARD,
-    open_run_folder,
+    locked_run_folder,
     versions,
     write_atomically,
 )
 from agents.tasks import Predictor, Task
 from agents.training_config import TrainingConfig, TrainingResult
 from agents.vec_env import GymnasiumVecEnv
-from flapenv.whole_file import write_json
+from flapenv.aero.checks import require_scalar, shown
+from flapenv.whole_file import json_text, write_json
 
 __all__ = ["DivergedError", "TrainingConfig", "TrainingResult", "make_model", "summary", "train"]
 
@@ -52,45 +63,117 @@ def make_model(preset: Preset, task: Task, seed: int) -> BaseAlgorithm:
 
 
 def train(
-    config: TrainingConfig, out: Path | None = None, *, progress: bool = True, report: bool = True
+    config: TrainingConfig,
+    out: Path | None = None,
+    *,
+    progress: bool = True,
+    report: bool = True,
+    resume: bool = False,
+    checkpoint_seconds: float = CHECKPOINT_SECONDS,
 ) -> TrainingResult:
     """Train from random weights; the last policy is the result, nothing is picked by its score.
 
-    Writes config.json at the start, the policy and the learning curve as it goes, and results.json, pictures and a
-    report at the end. Ctrl-C ends the training early and keeps what was learned: everything is written for the policy
-    as it is then.
+    Writes config.json at the start, the learning curve and checkpoints as it goes, and the policy, results.json,
+    pictures and a report at the end. Ctrl-C ends the training early and keeps what was learned: everything is written
+    for the policy as it is then. A run that was killed, or stopped early, goes on from its last checkpoint with
+    `resume`; with the same versions and machine it ends with the policy of a run that was never stopped.
 
     Args:
         config: what to train.
         out: the run's folder; see `open_run_folder`.
         progress: whether to show a progress bar.
         report: whether to write the HTML report.
+        resume: whether to go on with the run in `out`: from its checkpoint, from the beginning where there is none
+            yet, and not at all where it is finished.
+        checkpoint_seconds: between two checkpoints, at least [s].
 
     Raises:
-        FileExistsError: if the folder holds a run already.
+        BlockingIOError: if another process trains into the folder.
+        FileExistsError: if the folder holds a run that is not to go on.
+        ValueError: if it holds a run of another config, or a checkpoint that is not what was written.
         DivergedError: if weights became NaN or inf.
         OSError: if it cannot be written.
     """
     described = config.to_dict()
-    json.dumps(
-        described, ensure_ascii=False, allow_nan=False
-    ).encode()  # before anything is spent on what cannot be kept
+    json_text(described).encode()  # before anything is spent on what cannot be kept
+    require_scalar("checkpoint_seconds", checkpoint_seconds, 0.0)
     preset: Preset = config.preset
     task, settings = preset.make_task(), preset.settings
     torch.set_num_threads(settings.threads)
     model = make_model(preset, task, config.seed)
     task.glance(flown(model))  # references are solved before the clock starts
-    out = open_run_folder(out, f"{config.name}-seed{config.seed}")
-    write_json(out / CONFIG, {**described, "versions": versions()})
-    model.set_logger(configure(str(out / TENSORBOARD), ["tensorboard"]))
-    curve = LearningCurve(out, task, settings.wingbeats)
-    checkpoints = Checkpoints(out, settings.wingbeats)
+    with locked_run_folder(out, f"{config.name}-seed{config.seed}", resume=resume) as folder:
+        keep_config(folder, config)
+        if resume and is_finished(folder):
+            return finished_result(folder, task)
+        curve = _begun(model, task, folder, settings.wingbeats)
+        interrupted = _learn(config, model, curve, folder, progress, checkpoint_seconds)
+        result = TrainingResult(
+            out=folder,
+            verdict=task.judge(flown(model)),
+            wingbeats=model.num_timesteps,
+            seconds=curve.seconds,
+            interrupted=interrupted,
+        )
+        save_results(config, result, model)
+        draw_pictures(f"{config.name}, seed {config.seed}", task, result, flown(model))
+        if report:
+            result = dataclasses.replace(result, report=_reported(config, task, result))
+        if not interrupted:
+            remove_checkpoint(folder / CHECKPOINT)
+        return result
+
+
+def _begun(model: BaseAlgorithm, task: Task, folder: Path, budget: int) -> LearningCurve:
+    """The learning curve of a run, which begins, or goes on from its checkpoint like the learner.
+
+    Raises:
+        ValueError: if the checkpoint is not of this run.
+        OSError: if it cannot be read.
+    """
+    path = folder / CHECKPOINT
+    checkpoint = read_checkpoint(path)
+    if checkpoint is None:
+        return LearningCurve(folder, task, budget)
+    try:
+        found = checkpoint.numbers.get("environment")
+        if found != task.environment:
+            raise ValueError(f"environment = {shown(found)} is not allowed; allowed: {task.environment!r}")
+        learner = checkpoint.numbers.get("learner")
+        if not isinstance(learner, dict):
+            raise ValueError(f"learner = {shown(learner)} is not allowed; allowed: its numbers")
+        restore_learner(model, Checkpoint(numbers=learner, arrays=checkpoint.arrays))
+        return LearningCurve(folder, task, budget, checkpoint.numbers.get("curve"))
+    except (TypeError, ValueError) as problem:
+        raise ValueError(f"{path} is not of this run: {problem}; without that folder the run begins again") from None
+
+
+def _learn(
+    config: TrainingConfig, model: BaseAlgorithm, curve: LearningCurve, folder: Path, progress: bool, apart: float
+) -> bool:
+    """Train until the budget is spent or Ctrl-C, and write the policy; whether it was Ctrl-C.
+
+    Raises:
+        DivergedError: if weights became NaN or inf.
+        OSError: if something cannot be written; the last checkpoint stays.
+    """
+    settings = config.preset.settings
+
+    def make_checkpoint() -> None:
+        _require_finite(model)
+        state = learner_state(model)
+        numbers = {"environment": curve.task.environment, "curve": curve.state(), "learner": state.numbers}
+        write_checkpoint(folder / CHECKPOINT, Checkpoint(numbers=numbers, arrays=state.arrays))
+
     bar = ProgressBar(curve, settings.wingbeats, shown=progress)
-    callbacks = CallbackList([Annealing(settings), curve, checkpoints, bar])
-    started, interrupted = time.monotonic(), False
+    checkpoints = Checkpoints(make_checkpoint, seconds=apart)  # first: the others see that rollout begin again
+    callbacks = CallbackList([checkpoints, Annealing(settings), curve, bar])
+    interrupted = False
     with one_interrupt():
         try:
-            model.learn(settings.wingbeats, callback=callbacks)
+            model.set_logger(configure(str(folder / TENSORBOARD), ["tensorboard"]))
+            left = max(0, settings.wingbeats - model.num_timesteps)
+            model.learn(left, callback=callbacks, reset_num_timesteps=model._last_obs is None)
         except KeyboardInterrupt:
             interrupted = True
         except ValueError:
@@ -98,24 +181,16 @@ def train(
             raise
         finally:
             bar.close()
-        seconds = time.monotonic() - started - curve.watching
+        curve.end()
         if interrupted:
             print(f"stopped after {model.num_timesteps:,} wingbeats; keeping what was learned", file=sys.stderr)
         _require_finite(model)
+        if not interrupted:
+            make_checkpoint()
         curve.measure()
-        checkpoints.init_callback(model)
-        checkpoints.save()
-        save_actor(config, model, out, {"mean": None, "worst": None})
-    result = TrainingResult(
-        out=out,
-        verdict=task.judge(flown(model)),
-        wingbeats=model.num_timesteps,
-        seconds=seconds,
-        interrupted=interrupted,
-    )
-    save_results(config, result, model)
-    draw_pictures(f"{config.name}, seed {config.seed}", task, result, flown(model))
-    return dataclasses.replace(result, report=_reported(config, task, result)) if report else result
+        write_atomically(folder / POLICY, model.save)
+        save_actor(config, model, folder, {"mean": None, "worst": None})
+    return interrupted
 
 
 def _require_finite(model: BaseAlgorithm) -> None:

@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all: a crash leaves the old file or the new one."""
+"""Files that are there whole or not at all: a crash or a power cut leaves the old file or the new one."""
 
 import contextlib
 import errno
@@ -10,32 +10,61 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+PARTIAL = ".partial-"
+"""What the names of files begin with that are not in their place yet."""
+READABLE = 0o644
+"""What a file allows that is made anew, less what the umask forbids: to be read, and to be written by its owner."""
+
 
 @contextlib.contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """A file beside `path` to write into, which takes its place in one step, or is removed if anything goes wrong.
 
-    A link stays one and its target is replaced; a file that was there leaves its permissions to the new one.
+    A link stays one and its target is replaced; a file that was there leaves its permissions to the new one. What was
+    written is on the disk, not only on its way there, when the file takes its place. A process that is killed meanwhile
+    leaves a file whose name begins with `PARTIAL`; see `remove_partial`.
 
     Raises:
         OSError: if the folder cannot be written.
     """
     target = Path(os.path.realpath(path))
-    beside = target.with_name(f".{uuid.uuid4().hex[:8]}{target.suffix}")  # short: the target's name may be the longest
+    name = f"{PARTIAL}{uuid.uuid4().hex[:8]}{target.suffix}"  # short: the target's name may be the longest
+    beside = target.with_name(name)
     try:
-        beside.touch()
+        beside.touch(READABLE, exist_ok=False)
     except OSError as error:
         raise _named(error, path) from error
     try:
         try:
             yield beside
+            _to_the_disk(beside)
         except OSError as error:
             raise _named(error, path) from error
         if target.exists():
             beside.chmod(stat.S_IMODE(target.stat().st_mode))
         beside.replace(target)
+        _to_the_disk(target.parent)
     finally:
         beside.unlink(missing_ok=True)
+
+
+def _to_the_disk(path: Path) -> None:
+    """Wait until a file's content, or the names in a folder, have reached the disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def remove_partial(folder: Path) -> None:
+    """Remove what a killed process has left half-written in a folder that nobody else is writing into.
+
+    Raises:
+        OSError: if the folder cannot be written.
+    """
+    for left in folder.glob(f"{PARTIAL}*"):
+        left.unlink()
 
 
 def _named(error: OSError, path: Path) -> OSError:

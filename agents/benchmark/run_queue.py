@@ -10,10 +10,10 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from agents.benchmark.folder_lock import locked
 from agents.benchmark.machine import note_machine
 from agents.benchmark.subprocesses import ERRORS, Command, run_all
 from agents.benchmark.training_run import COMMAND, Run, clear, cut_short, is_there, run_command
+from agents.folder_lock import locked
 from agents.run_folder import RESULTS
 from flapenv.aero.checks import record
 from flapenv.whole_file import write_json

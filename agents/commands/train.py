@@ -9,10 +9,16 @@ from typing import Any
 from agents.commands.one_line_parser import OneLineParser, folder, said
 from flapenv.aero.checks import allowed
 
-CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "versions")
-"""Of a config.json; `environment` and `versions` are told, not asked for."""
+CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "command", "versions")
+"""Of a config.json; `environment`, `command` and `versions` are told, not asked for."""
+RECIPE = ("task", "algorithm", "settings")
+"""Those of them that make a preset."""
 UNCOUNTED = ("--quiet", "--no-report")
 """Options that change nothing about what is learned."""
+UNCOUNTED_VALUES = ("--out", "--checkpoint-seconds")
+"""The same of options with a value."""
+BESIDE_RESUME = ("resume", "quiet", "no_report", "checkpoint_seconds")
+"""Options that can be told of a run that goes on."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -34,7 +40,8 @@ def parser() -> argparse.ArgumentParser:
             "  python train.py --insects hawkmoth fruitfly --wingbeats 500000\n"
             "  python train.py --wing docs/examples/robot.json   your own wing, within its limits\n"
             "  python train.py --preset random-wings-ppo    one policy for every wing; see --list\n"
-            "  python train.py --set rows=4096 --set learning_rate=0.001\n\n"
+            "  python train.py --set rows=4096 --set learning_rate=0.001\n"
+            "  python train.py --resume runs/second         goes on with a run that was stopped or killed\n\n"
             "other commands, each with its own --help:\n"
             "  python train.py evaluate hover               a shipped policy, or a run's, judged again\n"
             "  python train.py explore                      a page on which one moves a stroke and sees its cost\n"
@@ -43,7 +50,9 @@ def parser() -> argparse.ArgumentParser:
             "  python train.py compare                      optimisers on the same strokes, with equal budgets\n\n"
             "a run folder holds config.json, results.json, the policy (policy.safetensors with its card policy.json,\n"
             "and Stable-Baselines3's policy.zip), curve.csv, TensorBoard logs, two pictures and report.html, one\n"
-            "page that shows it all; Ctrl-C stops early, keeps what was learned and prints the comparison for it"
+            "page that shows it all; Ctrl-C stops early, keeps what was learned and prints the comparison for it.\n"
+            "A run that was stopped or killed, whenever that was, goes on from its checkpoint with --resume DIR and\n"
+            "ends as if nothing had happened"
         ),
     )
     made.add_argument(
@@ -79,6 +88,15 @@ def parser() -> argparse.ArgumentParser:
         dest="settings",
         help="of the learner; repeatable",
     )
+    made.add_argument(
+        "--resume", type=folder, metavar="DIR", help="go on with the run in DIR; its config says the rest"
+    )
+    made.add_argument(
+        "--checkpoint-seconds",
+        type=float,
+        metavar="S",
+        help="between two checkpoints, at least (default 5); they never take more than a hundredth of the time",
+    )
     made.add_argument("--no-report", action="store_true", help="no report.html")
     made.add_argument("--quiet", action="store_true", help="no progress bar")
     return made
@@ -91,10 +109,19 @@ def train_command(arguments: list[str]) -> int:
         print(presets_table())
         return 0
     try:
-        config = config_of(options, shlex.join(["python", "train.py", *what_counts(arguments)]))
+        command = shlex.join(["python", "train.py", *what_counts(arguments)])
+        config = config_of(options, command) if options.resume is None else resumed_config(options)
         from agents.training import summary, train
 
-        result = train(config, options.out, progress=not options.quiet, report=not options.no_report)
+        apart = options.checkpoint_seconds
+        result = train(
+            config,
+            options.out if options.resume is None else options.resume,
+            progress=not options.quiet,
+            report=not options.no_report,
+            resume=options.resume is not None,
+            **({} if apart is None else {"checkpoint_seconds": apart}),
+        )
     except (ValueError, TypeError, OSError, ArithmeticError, MemoryError) as mistake:
         print(f"train.py: {said(mistake)}", file=sys.stderr)
         return 1 if isinstance(mistake, ArithmeticError) else 2
@@ -107,13 +134,13 @@ def what_counts(arguments: list[str]) -> list[str]:
     kept, rest = [], iter(arguments)
     for one in rest:
         name, _, value = one.partition("=")
-        if one == "--out":
+        if one in UNCOUNTED_VALUES:
             next(rest, None)
         elif one in ("--config", "--wing"):
             kept += [one, Path(next(rest, "")).name]  # not where on this machine it lies
         elif name in ("--config", "--wing"):
             kept.append(f"{name}={Path(value).name}")
-        elif one not in UNCOUNTED and not one.startswith("--out="):
+        elif one not in UNCOUNTED and name not in UNCOUNTED_VALUES:
             kept.append(one)
     return kept
 
@@ -139,7 +166,8 @@ def config_of(options: argparse.Namespace, command: str) -> Any:
         name = known[require_name("--algorithm", options.algorithm.lower(), known)]
     chosen: Any = name
     if options.config is not None:
-        name, seed, chosen = read_config(options.config)
+        content = read_config(options.config, f"--config {options.config}")
+        name, seed, chosen = content["preset"], content["seed"], recipe(content)
     preset = as_preset(chosen)
     own = {"insects": options.insects, "problem": options.problem, "leave_out": options.leave_out}
     task = {key: value for key, value in own.items() if value is not None}
@@ -189,8 +217,36 @@ def hover_learners() -> dict[str, str]:
     return {algorithm: name for algorithm, name in names.items() if name in PRESETS}
 
 
-def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
-    """Name, seed and preset of a config.json.
+def resumed_config(options: argparse.Namespace) -> Any:
+    """The `TrainingConfig` of a run that goes on.
+
+    Raises:
+        ValueError: beside an option that asks for another run, and for a config that is not one.
+        TypeError: for unknown keys or values of another kind.
+        OSError: if it cannot be read.
+    """
+    from agents.run_folder import CONFIG
+    from agents.training import TrainingConfig
+
+    beside = [
+        name for name, value in vars(options).items() if name not in BESIDE_RESUME and value not in (None, False, [])
+    ]
+    if beside:
+        told = f"--{beside[0].replace('_', '-')}" if beside[0] != "settings" else "--set"
+        raise ValueError(f"--resume and {told} ask for two runs; allowed: --resume with --quiet or --no-report alone")
+    path = options.resume / CONFIG
+    content = read_config(path, str(path))
+    return TrainingConfig(
+        preset=recipe(content), name=content["preset"], seed=content["seed"], command=content["command"]
+    )
+
+
+def read_config(path: Path, called: str) -> dict[str, Any]:
+    """What a config.json says, with "preset", "seed" and "command" whether they are there or not.
+
+    Args:
+        path: of the file.
+        called: how errors call it.
 
     Raises:
         ValueError: for what is not JSON, or lacks a key.
@@ -200,19 +256,22 @@ def read_config(path: Path) -> tuple[str, int, dict[str, Any]]:
     from agents.presets import as_preset
     from flapenv.read_json import read_object
 
-    content = read_object(path, called=f"--config {path}", mend="a config.json as a run writes it")
+    content = read_object(path, called=called, mend="a config.json as a run writes it")
     for key in content:
         if key not in CONFIG_KEYS:
-            raise TypeError(f"--config {path} has an unknown key {key!r}; {allowed(key, CONFIG_KEYS)}")
-    needed = ("task", "algorithm", "settings")
-    missing = [key for key in needed if key not in content]
+            raise TypeError(f"{called} has an unknown key {key!r}; {allowed(key, CONFIG_KEYS)}")
+    missing = [key for key in RECIPE if key not in content]
     if missing:
-        raise ValueError(f"--config {path} lacks {', '.join(missing)}; allowed: a config.json as a run writes it")
-    preset = {key: content[key] for key in needed}
+        raise ValueError(f"{called} lacks {', '.join(missing)}; allowed: a config.json as a run writes it")
     told = content.get("environment")
-    if told is not None and told != (flies := as_preset(preset).make_task().environment):
-        raise ValueError(f"--config {path} has environment = {told!r}; allowed: {flies!r}, which its task flies")
-    return content.get("preset", ""), content.get("seed", 0), preset
+    if told is not None and told != (flies := as_preset(recipe(content)).make_task().environment):
+        raise ValueError(f"{called} has environment = {told!r}; allowed: {flies!r}, which its task flies")
+    return {"preset": "", "seed": 0, "command": "", **content}
+
+
+def recipe(content: dict[str, Any]) -> dict[str, Any]:
+    """The part of a config that is a preset."""
+    return {key: content[key] for key in RECIPE}
 
 
 def presets_table() -> str:

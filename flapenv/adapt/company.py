@@ -38,6 +38,8 @@ class Company:
         known: of every insect, whether the tuned references fly with it.
     """
 
+    kept = ("controllers", "returns")
+
     def __init__(self, task: AdaptTask, tuned: Sequence[Tuned | None], rows: int, *, wanted: bool) -> None:
         """Take the references of every insect of the task; None where there are none but the optimum."""
         self._task, self._wanted = task, wanted
@@ -47,6 +49,7 @@ class Company:
         self._fixed, self._felt = (beats_of(self._tuned[name]) for name in ("fixed_action", "felt_action"))
         self.controllers: dict[str, Controller] = {}
         self.returns = {name: np.zeros(rows) for name in NAMES}
+        self.begin(np.ones(rows, dtype=bool), np.zeros(rows, dtype=np.intp))
 
     def begin(self, mask: np.ndarray, insect: np.ndarray) -> None:
         """Start again in the rows of the mask, and go on in the others.

@@ -66,6 +66,8 @@ class Controller(Protocol):
 class FixedStroke:
     """The same stroke on every beat."""
 
+    kept = ()
+
     def __init__(self, beats: Beats) -> None:
         """Take the strokes, of every row (n,) or of all."""
         self._beats = beats
@@ -83,6 +85,8 @@ class FixedStroke:
 
 class FeltLift:
     """φmax ← φmax Λ̂^(-κ) (1 + margin), within the box, at one waveform."""
+
+    kept = ("_amplitude",)
 
     def __init__(self, beats: Beats, gain: Real, margin: Real) -> None:
         """Take the first stroke, κ and the margin, of every row (n,) or of all."""
@@ -106,6 +110,8 @@ class FeltLift:
 
 class LadderClimber:
     """h ← h Λ̂^(-κ) (1 + margin), within the ladder; h is the weight support that the nominal wing would have."""
+
+    kept = ("_height",)
 
     def __init__(self, task: AdaptTask, index: np.ndarray, height: Real, gain: Real, margin: Real) -> None:
         """Take the insect of every row (n,), and the first place, κ and the margin, of every row or of all."""

@@ -5,10 +5,12 @@ from flapenv.envs.hover import HoverEnv
 from flapenv.envs.hover_adapt import HoverAdaptEnv, HoverAdaptVectorEnv
 from flapenv.envs.hover_batch import HoverVectorEnv
 from flapenv.envs.registration import ENV_IDS, register_envs
+from flapenv.envs.state import EnvState
 from flapenv.envs.waveform import WaveformEnv, WaveformVectorEnv
 
 __all__ = [
     "ENV_IDS",
+    "EnvState",
     "HeaveEnv",
     "HeaveVectorEnv",
     "HoverAdaptEnv",

@@ -1,6 +1,7 @@
 """What every batched environment of the family shares: autoreset written once, reset masks, infos."""
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from typing import Any
 
 import gymnasium as gym
@@ -9,7 +10,7 @@ from gymnasium import error, spaces
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from flapenv.aero.checks import require_count
+from flapenv.aero.checks import require_count, shown
 from flapenv.envs.arguments import (
     RENDER_MODES,
     InfoChoice,
@@ -19,6 +20,16 @@ from flapenv.envs.arguments import (
     require_options,
     require_render_mode,
     require_seed,
+)
+from flapenv.envs.state import (
+    EnvState,
+    Limits,
+    as_generator,
+    changes,
+    checked_arrays,
+    kept_arrays,
+    random_state,
+    require_limits,
 )
 
 Info = dict[str, Any]
@@ -33,11 +44,16 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     - NEXT_STEP: the step after an episode's end ignores that row's action, resets it and returns reward 0.
     - SAME_STEP: the row is reset within its last step; its last observation and info are `final_obs`, `final_info`.
     - DISABLED: rows that ended must be reset with `options={"reset_mask": mask}` before they step again.
+
+    A member names in `kept` all that the next steps depend on (`flapenv.envs.state`), and in `with_nan` the arrays of
+    that in which NaN stands for what has not been.
     """
 
     metadata: dict[str, Any] = {"render_modes": list(RENDER_MODES), "render_fps": 2}
     reset_options: tuple[str, ...] = ()
     info_keys: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ("_ended", "_begun")
+    with_nan: tuple[str, ...] = ()
 
     def __init__(
         self,
@@ -87,6 +103,47 @@ class BatchEnv(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     @abstractmethod
     def _picture(self, row: int) -> np.ndarray:
         """The last wingbeat of a row, (height, width, 3) of uint8."""
+
+    def _limits(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Limits]:
+        """What whole numbers of a state may be, by their names; the arrays are all there, of the right kind."""
+        return {}
+
+    def _restored(self) -> None:
+        """Make again what follows from what is kept."""
+
+    def state(self) -> EnvState:
+        """All that the next steps and pictures depend on, copied.
+
+        Generators of the spaces, as `action_space.sample` draws from, are not in it.
+
+        Raises:
+            ValueError: where `np_random` was replaced by a generator of another kind than Gymnasium's.
+        """
+        return EnvState(arrays=kept_arrays(self), random=random_state(self._np_random, self._np_random_seed))
+
+    def restore(self, state: EnvState) -> None:
+        """Go on from a state as the environment it was taken from went on, bit for bit; no reset is needed before.
+
+        Args:
+            state: of an environment made with the same arguments; it is copied. An error leaves all as it was.
+
+        Raises:
+            TypeError: for what is not a state.
+            ValueError: for a missing or unknown array, one of another type or shape, numbers that are not finite or out
+                of range, or another bit generator.
+        """
+        if not isinstance(state, EnvState):
+            raise TypeError(f"state = {shown(state)} is not allowed; allowed: an EnvState")
+        arrays = checked_arrays(state.arrays, kept_arrays(self), with_nan=self.with_nan)
+        require_limits(arrays, self._limits(arrays))
+        generator, seed = as_generator(state.random)
+        if generator is None and arrays["begun"]:
+            raise ValueError("state: random = None is not allowed where an episode has begun; allowed: a dict")
+        wanted = changes(self, arrays)  # all is checked before anything changes
+        self._np_random, self._np_random_seed = generator, seed
+        for owner, name, value in wanted:
+            setattr(owner, name, value)
+        self._restored()
 
     def render(self) -> tuple[np.ndarray, ...] | None:
         """The last wingbeat of every row as pictures (height, width, 3) of uint8; None without a render mode."""

@@ -16,6 +16,7 @@ from flapenv.envs.batch import BatchEnv, Info
 from flapenv.envs.describe import action_table, described, markdown_table, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.single import SingleEnv
+from flapenv.envs.state import Limits
 from flapenv.envs.wing_features import OBSERVATION_LIMIT
 from flapenv.heave.dynamics import HeaveBeat, HeaveDynamics
 from flapenv.heave.gusts import EpisodeStreams, GustModel, Place, as_gusts
@@ -50,6 +51,12 @@ class HeaveVectorEnv(BatchEnv):
     """
 
     reset_options = ("insect", "height", "velocity")
+    kept = (
+        *BatchEnv.kept,
+        *("_insect", "_height", "_velocity", "_gust", "_support", "_beat_number", "_action"),
+        *("_streams", "_series_begun", "_stroke", "_beaten", "_paths"),
+    )
+    with_nan = ("paths",)
     info_keys = (
         "insect",
         "beat",
@@ -132,6 +139,19 @@ class HeaveVectorEnv(BatchEnv):
         self._beaten = np.zeros(num_envs, dtype=np.intp)  # the insect of each row's last wingbeat
         self._paths = np.full((num_envs if render_mode else 0, self.beats + 1), np.nan)  # z/R of the last episode
 
+    @property
+    def _series_begun(self) -> bool:
+        """Whether the streams' keys came from the present generator."""
+        return self._source is not None and self._source is self._np_random
+
+    @_series_begun.setter
+    def _series_begun(self, begun: bool) -> None:
+        self._source = self._np_random if begun else None
+
+    def _limits(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Limits]:
+        insects, beats = (0, len(self.insects) - 1), (0, self.beats - 1 + arrays["ended"])
+        return {"insect": insects, "beaten": insects, "beat_number": beats}
+
     def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
         """The option "insect" as row numbers, height and velocity for every row."""
         options = prepared_insects(options, [one.name for one in self.insects], self.num_envs)
@@ -142,9 +162,9 @@ class HeaveVectorEnv(BatchEnv):
     def _begin(self, mask: np.ndarray, options: dict[str, Any]) -> Info:
         insect, height, velocity = (options.get(name) for name in ("insect", "height", "velocity"))
         key = None
-        if self._source is not self.np_random:  # seeded since: a series of episodes begins
-            self._source = self.np_random
+        if not self._series_begun:  # seeded since
             key = int(self.np_random.integers(2**63))
+            self._series_begun = True
         streams = self._streams
         streams.begin(mask, key)
         drawn = (streams.uniform(Place.INSECT) * len(self.insects)).astype(np.intp)

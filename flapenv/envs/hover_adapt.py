@@ -21,6 +21,7 @@ from flapenv.envs.describe import action_table, described, stroke_rows
 from flapenv.envs.insect_choice import InsectChoice, listed_insects, prepared_insects
 from flapenv.envs.last_beat import LastBeat
 from flapenv.envs.single import SingleEnv
+from flapenv.envs.state import Limits
 from flapenv.envs.wing_features import OBSERVATION_LIMIT, wing_features
 from flapenv.objective import QUADRATURE_TOLERANCE
 from flapenv.optimum import gap_charge
@@ -41,6 +42,7 @@ class HoverAdaptVectorEnv(BatchEnv):
     """
 
     reset_options = ("insect", "condition")
+    kept = (*BatchEnv.kept, "_insect", "_flown", "_draws", "_memory", "_return", "_company", "_last")
     info_keys = (
         "insect",
         "beat",
@@ -129,6 +131,14 @@ class HoverAdaptVectorEnv(BatchEnv):
         self._memory = np.zeros((num_envs, MEMORY, 2 + axes), dtype=np.float32)  # the last beat first
         self._return = np.zeros(num_envs)
         self._last = LastBeat(num_envs, self.beats, tuple(vars(NOMINAL)), TRACES)
+
+    def _limits(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Limits]:
+        insects, beats = (0, len(self.insects) - 1), (0, self.beats - 1 + arrays["ended"])
+        return {"insect": insects, "flown": beats, "last.insect": insects, "last.beats": (0, self.beats)}
+
+    def _restored(self) -> None:
+        self._begin_flights()
+        self._company.begin(np.zeros(self.num_envs, dtype=bool), self._insect)  # in no row: all go on as they are
 
     def prepare(self, options: dict[str, Any]) -> dict[str, Any]:
         """The option "insect" as row numbers, and "condition" as a checked `Condition` that all of them can carry."""

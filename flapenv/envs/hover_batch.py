@@ -39,6 +39,7 @@ class HoverVectorEnv(OneBeatEnv):
     Batches of different sizes agree to rounding.
     """
 
+    kept = (*OneBeatEnv.kept, "_stroke")
     info_keys = (
         "insect",
         "weight_support",

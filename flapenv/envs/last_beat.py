@@ -16,6 +16,8 @@ class LastBeat:
         trace: numbers of every beat of that episode, shape (traces, rows, beats).
     """
 
+    kept = ("insect", "beats", "numbers", "trace", "_stroke")
+
     def __init__(self, rows: int, beats: int, numbers: tuple[str, ...], traces: int) -> None:
         """Nothing has been flown.
 

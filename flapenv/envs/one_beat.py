@@ -1,5 +1,6 @@
 """What environments have in common whose episode is one wingbeat: draws, what is felt, what is seen."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from flapenv.case import HoverCase
 from flapenv.envs.arguments import InfoChoice
 from flapenv.envs.batch import BatchEnv, Info
 from flapenv.envs.insect_choice import prepared_insects
+from flapenv.envs.state import Limits
 from flapenv.envs.wing_features import OBSERVATION_LIMIT, seen, wing_features
 from flapenv.problem import HoverProblem
 
@@ -28,6 +30,7 @@ class OneBeatEnv(BatchEnv):
     """
 
     reset_options = ("insect",)
+    kept = (*BatchEnv.kept, "_insect", "_felt", "_beaten")
 
     def __init__(
         self,
@@ -87,6 +90,10 @@ class OneBeatEnv(BatchEnv):
         self._insect = np.where(mask, options.get("insect", drawn), self._insect)
         self._felt[mask] = FIRST_FELT
         return {"insect": self._names[self._insect]}
+
+    def _limits(self, arrays: Mapping[str, np.ndarray]) -> dict[str, Limits]:
+        last = len(self._names) - 1
+        return {"insect": (0, last), "beaten": (NOT_YET, last)}
 
     def _own(self, rows: Any) -> StrokeReference:
         """The own strokes of the insects at `rows`."""

@@ -8,6 +8,7 @@ from gymnasium.vector import AutoresetMode
 
 from flapenv.envs.arguments import arguments_of, checked_actions, refuse_unknown, require_options, require_seed
 from flapenv.envs.batch import BatchEnv, Info
+from flapenv.envs.state import EnvState
 
 BATCH_ONLY = ("num_envs", "autoreset_mode")
 """Arguments of a batch that a single environment has no use for."""
@@ -76,6 +77,16 @@ class SingleEnv(gym.Env[np.ndarray, np.ndarray]):
         """The last wingbeat as a picture (height, width, 3) of uint8; None without a render mode."""
         frames: Any = self.batch.render()
         return None if frames is None else frames[0]
+
+    def state(self) -> EnvState:
+        """All that the next steps and pictures depend on, copied, as `BatchEnv.state`."""
+        self.batch._np_random, self.batch._np_random_seed = self._np_random, self._np_random_seed
+        return self.batch.state()
+
+    def restore(self, state: EnvState) -> None:
+        """Go on from a state of an environment made with the same arguments; all else as `BatchEnv.restore`."""
+        self.batch.restore(state)
+        self._np_random, self._np_random_seed = self.batch._np_random, self.batch._np_random_seed
 
     def _plain(self, info: Info) -> Info:
         """The wanted infos of a batch of one as plain Python values; None where the row has no value."""

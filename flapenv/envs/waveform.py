@@ -32,6 +32,7 @@ class WaveformVectorEnv(OneBeatEnv):
     Batches of different sizes agree to rounding.
     """
 
+    kept = (*OneBeatEnv.kept, "_actions")
     info_keys = (
         "insect",
         "weight_support",

@@ -88,6 +88,8 @@ class Place(IntEnum):
 class EpisodeStreams:
     """Random numbers of each row's episode, by their place in it."""
 
+    kept = ("_key", "_episode", "_seed")
+
     def __init__(self, rows: int) -> None:
         """Begin without a key; `begin` sets it."""
         self._number = np.arange(1, rows + 1, dtype=np.uint64)

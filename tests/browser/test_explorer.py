@@ -234,6 +234,8 @@ def test_paper_tells_insect_problem_and_stroke_with_figures_of_its_width(opened:
         expect(printed).to_contain_text(told)
     drawn = opened.locator(".figure .js-plotly-plot > .plot-container .main-svg")
     expect(drawn.first).to_have_css("width", "680px")
+    opened.evaluate("window.dispatchEvent(new Event('resize'))")  # as a browser may tell of the paper's width later
+    opened.wait_for_timeout(1000)
     assert set(drawn.evaluate_all("all => all.map(one => one.clientWidth)")) == {680}
     opened.emulate_media(media="screen")
     opened.evaluate("window.dispatchEvent(new Event('afterprint'))")

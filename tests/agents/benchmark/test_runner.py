@@ -14,10 +14,10 @@ from pretended_runs import config, diary, faked, hover_preset
 import agents.presets
 from agents.benchmark import subprocesses, training_run
 from agents.benchmark.command import benchmark_command
-from agents.benchmark.folder_lock import LOCK, locked
 from agents.benchmark.runner import BenchmarkConfig, run_benchmark
 from agents.benchmark.subprocesses import ERRORS, PRINTED
 from agents.benchmark.training_run import Run, differences, run_command
+from agents.folder_lock import LOCK, locked
 from agents.presets import Preset
 from agents.run_folder import RESULTS
 from agents.training import TrainingConfig

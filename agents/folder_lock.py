@@ -22,17 +22,19 @@ def locked(folder: Path) -> Iterator[int]:
 
     Raises:
         BlockingIOError: if another holds it; names the process.
+        OSError: if the folder cannot be written.
     """
-    with (folder / LOCK).open("a+", encoding="utf-8") as file:
+    descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    with os.fdopen(descriptor, "r+", encoding="utf-8") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            file.seek(0)
             holder = file.read().strip() or "unknown"
             raise BlockingIOError(
                 f"{folder} is in use by process {holder}, or by what it started; allowed: one at a time"
             ) from None
-        file.truncate(0)
-        file.write(str(os.getpid()))
-        file.flush()
-        yield file.fileno()
+        with contextlib.suppress(OSError):  # a full disk forbids no lock, only its note
+            file.truncate(0)
+            file.write(str(os.getpid()))
+            file.flush()
+        yield descriptor
