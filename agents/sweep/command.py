@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -92,8 +93,13 @@ def sweep_command(arguments: list[str]) -> int:
 
     Returns:
         0 if every run is there, 1 if one failed, 2 for bad input, 130 after Ctrl-C.
+
+    Raises:
+        ImportError: if Ray is not installed.
     """
     options = sweep_parser().parse_args(arguments)
+    if find_spec("ray") is None:  # not imported yet: it reads the environment when it is
+        raise ModuleNotFoundError("No module named 'ray'")
     try:
         if options.jobs is not None:
             require_count("jobs", options.jobs)

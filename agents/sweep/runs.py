@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from agents.benchmark.training_run import cut_short, differences
+from agents import resuming
+from agents.benchmark.training_run import differences
 from agents.presets import Preset
 from agents.run_folder import CONFIG, RESULTS
 from agents.training_config import TrainingConfig
@@ -113,13 +114,12 @@ def is_finished(run: SweepRun, storage: Path) -> bool:
     folder = storage / run.name
     if not (folder / CONFIG).is_file():
         return False
-    described = run.described()
-    differs = differences(described, read_object(folder / CONFIG))
+    differs = differences(run.described(), read_object(folder / CONFIG))
     if differs:
         raise ValueError(
             f"{folder} was made with other settings: {'; '.join(differs)}; allowed: the same, or another folder"
         )
-    return (folder / RESULTS).is_file() and cut_short(folder / RESULTS, described["settings"]["wingbeats"]) is None
+    return resuming.is_finished(folder)
 
 
 def result_of(run: SweepRun, storage: Path) -> RunResult:

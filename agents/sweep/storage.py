@@ -5,9 +5,9 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-from agents.benchmark.folder_lock import locked
-from agents.benchmark.training_run import differences
+from agents.folder_lock import locked
 from agents.sweep.plan import SweepPlan
+from flapenv.aero.checks import shown
 from flapenv.read_json import read_object
 from flapenv.whole_file import write_json
 
@@ -69,7 +69,12 @@ def opened(storage: Path, plan: SweepPlan) -> Iterator[None]:
                 f"--storage {storage} cannot be written ({mistake}); allowed: a folder that can"
             ) from None
         if (storage / PLAN).exists():
-            differs = differences(plan.to_dict(), read_plan(storage).to_dict())
+            wanted, found = plan.to_dict(), read_plan(storage).to_dict()
+            differs = [
+                f"{key} = {shown(found[key])} there, wanted {shown(wanted[key])}"
+                for key in wanted
+                if found[key] != wanted[key]
+            ]
             if differs:
                 raise ValueError(
                     f"--storage {storage} holds another sweep: {'; '.join(differs)}; allowed: the same, or "
