@@ -80,7 +80,7 @@ def test_the_best_trial_is_first_and_its_command_is_complete() -> None:
 def test_the_files_hold_every_run_whole(tmp_path: Path) -> None:
     write_results(tmp_path, "the table", results(0.1 + 0.2, None), {"groups": []})
     assert (tmp_path / "table.txt").read_text() == "the table\n"
-    rows = list(csv.DictReader((tmp_path / "sweep_runs.csv").open()))
+    rows = list(csv.DictReader((tmp_path / "sweep_runs.csv").read_text().splitlines()))
     assert [row["folder"] for row in rows] == ["hover-ppo-seed0", "hover-ppo-seed1"]
     assert float(rows[0]["mean"]) == 0.1 + 0.2
     assert rows[1]["mean"] == ""
