@@ -20,16 +20,17 @@ ENVIRONMENT = {
     "RAY_health_check_timeout_ms": "2000",
 }
 NODES = """
-import json, sys
+import json, sys, tempfile
 from ray.cluster_utils import Cluster
 
-small = {"num_cpus": 1, "object_store_memory": 100 * 2**20}
-cluster = Cluster(initialize_head=True, head_node_args={**small, "include_dashboard": False})
-node = cluster.add_node(**small)
-[raylet] = node.all_processes["raylet"]
-print(json.dumps({"address": cluster.address, "raylet": raylet.process.pid}), flush=True)
-sys.stdin.read()
-cluster.shutdown()
+with tempfile.TemporaryDirectory(prefix="nodes-", dir="/tmp", ignore_cleanup_errors=True) as short:
+    small = {"num_cpus": 1, "object_store_memory": 100 * 2**20}
+    cluster = Cluster(initialize_head=True, head_node_args={**small, "include_dashboard": False, "temp_dir": short})
+    node = cluster.add_node(**small)
+    [raylet] = node.all_processes["raylet"]
+    print(json.dumps({"address": cluster.address, "raylet": raylet.process.pid}), flush=True)
+    sys.stdin.read()
+    cluster.shutdown()
 """
 
 

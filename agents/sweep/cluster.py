@@ -35,7 +35,6 @@ QUIET = {
     "RAY_AIR_NEW_OUTPUT": "0",  # Tune's own pages of tables
     "TUNE_DISABLE_AUTO_CALLBACK_LOGGERS": "1",  # the run folders say it all
     "TUNE_DISABLE_SIGINT_HANDLER": "1",  # Ctrl-C is ours
-    "TUNE_WARN_EXCESSIVE_EXPERIMENT_CHECKPOINT_SYNC_THRESHOLD_S": "0",
 }
 GREET = """
 import sys

@@ -135,6 +135,9 @@ def plan_of(options: argparse.Namespace) -> tuple[SweepPlan, Path]:
         if name in space:
             raise ValueError(f"--search {text}: {name} is searched twice; allowed: once")
         space[name] = choice
+    for name, told in (("batch", "--batch"), ("sampler_seed", "--seed")):
+        if name in asked and not space:
+            raise ValueError(f"{told} is of a search; allowed: --search beside it, or --seeds N for the seeds of runs")
     settings = dict(setting_of(text) for text in asked.pop("settings", []))
     return SweepPlan(**asked, search=space, settings=settings), options.storage or STORAGE
 

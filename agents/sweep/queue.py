@@ -1,20 +1,25 @@
 """Tune's side of a sweep: each run is a trial, started where a CPU is free, and again elsewhere if its node is lost."""
 
+import time
 import uuid
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from ray import tune
+from ray.exceptions import RayError
 from ray.tune.search import Searcher
 
 from agents.sweep.runs import SweepRun, is_finished
 from agents.sweep.sources import Failure, Source
 from agents.sweep.storage import RAY
 from agents.sweep.trials import packed, run_trial
+from flapenv.aero.checks import one_line
 
 LOSSES = 20
 """How often a run is started again because its worker was lost."""
+SEEN = 10.0
+"""Seconds until a file that another node wrote is seen here: shared folders lag behind."""
 
 
 class RunQueue(Searcher):
@@ -53,8 +58,11 @@ class RunQueue(Searcher):
         """Why a run that has ended has no result."""
         if result.get("failed") is not None:
             return Failure(why=str(result["failed"]), final=bool(result["final"]))
+        deadline = time.monotonic() + (0.0 if error else SEEN)
         try:
-            if is_finished(run, self._storage):
+            while not (there := is_finished(run, self._storage)) and time.monotonic() < deadline:
+                time.sleep(0.5)
+            if there:
                 return None
         except (ValueError, OSError) as mistake:
             return Failure(why=str(mistake), final=False)
@@ -100,6 +108,7 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
 
     Raises:
         KeyboardInterrupt: after a signal.
+        ConnectionError: if the cluster is lost.
     """
     tuner = tune.Tuner(
         tune.with_resources(run_trial, {"cpu": 1}),
@@ -117,4 +126,9 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
             failure_config=tune.FailureConfig(max_failures=LOSSES),
         ),
     )
-    tuner.fit()
+    try:
+        tuner.fit()
+    except (RayError, tune.TuneError) as mistake:
+        raise ConnectionError(
+            f"Ray has failed: {one_line(mistake, 300)}; finished runs are kept, and the same command goes on"
+        ) from None

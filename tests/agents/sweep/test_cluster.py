@@ -1,18 +1,21 @@
 """A cluster of two nodes on loopback: tokens, and a node that is killed mid-way."""
 
 import secrets
+import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from loopback_nodes import Nodes, children, loopback_nodes
-from sweeps_alone import TINY, begin, finished, require_same_as_alone, tiny_plan, until
+from sweeps_alone import TINY, finished, require_same_as_alone, tiny_plan, until
 
 from agents.run_folder import CONFIG, RESULTS
 
 pytestmark = pytest.mark.slow
+Begin = Callable[..., subprocess.Popen[str]]
 
 
-def test_every_trial_finishes_although_a_node_is_killed_mid_way(tmp_path: Path) -> None:
+def test_every_trial_finishes_although_a_node_is_killed_mid_way(begin: Begin, tmp_path: Path) -> None:
     storage = tmp_path / "sweep"
     asked = ["--presets", "hover-ppo", "--seeds", "8", "--wingbeats", "16384", *TINY, "--storage", str(storage)]
     with loopback_nodes(secrets.token_hex(32)) as nodes:

@@ -63,6 +63,8 @@ PPO = ["--presets", "hover-ppo"]
         ([*PPO, "--address", "nonsense"], "--address nonsense is not allowed; allowed: HOST:PORT"),
         ([*PPO, "--address", "127.0.0.1:99999"], "is not allowed; allowed: HOST:PORT"),
         ([*PPO, "--address", "127.0.0.1:1"], "127.0.0.1:1 does not answer .*; allowed: HOST:PORT of a head"),
+        ([*PPO, "--storage", "/proc/sweep"], "--storage /proc/sweep cannot be made .*; allowed: a folder that can"),
+        ([*PPO, "--seed", "3"], "--seed is of a search; allowed: --search beside it, or --seeds N"),
         (["--resume", "NOWHERE"], r"NOWHERE.sweep\.json does not exist; allowed: the folder of a sweep"),
         (["--resume", "FULL", "--seeds", "2"], "--resume goes without --seeds"),
         (["--resume", "FULL", "--storage", "x"], "--resume goes without --storage"),
