@@ -1,57 +1,25 @@
 """Train one policy by a preset, keep it, and judge it against its task's reference."""
 
 import dataclasses
-import sys
 from pathlib import Path
-from typing import Any
 
 import torch
 from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.callbacks import CallbackList
-from stable_baselines3.common.logger import configure
 
-from agents.actor_of import actor_of
-from agents.callbacks import Annealing, LearningCurve, ProgressBar
-from agents.checkpoint import (
-    CHECKPOINT_SECONDS,
-    Checkpoint,
-    Checkpoints,
-    learner_state,
-    read_checkpoint,
-    remove_checkpoint,
-    restore_learner,
-    write_checkpoint,
-)
-from agents.curve_picture import draw_learning_curve
-from agents.interrupts import one_interrupt
-from agents.policy_card import PolicyCard
-from agents.policy_file import save_policy
+from agents.checkpoint import CHECKPOINT_SECONDS, remove_checkpoint
+from agents.learning import DivergedError, Learning
 from agents.presets import Preset
 from agents.remembering import flown
 from agents.resuming import finished_result, is_finished, keep_config
-from agents.run_folder import (
-    CHECKPOINT,
-    CURVE_PICTURE,
-    POLICY,
-    POLICY_TENSORS,
-    RESULT_PICTURE,
-    RESULTS,
-    TENSORBOARD,
-    locked_run_folder,
-    versions,
-    write_atomically,
-)
-from agents.tasks import Predictor, Task
+from agents.run_folder import CHECKPOINT, locked_run_folder
+from agents.run_results import draw_pictures, reported, save_results
+from agents.tasks import Task
 from agents.training_config import TrainingConfig, TrainingResult
 from agents.vec_env import GymnasiumVecEnv
-from flapenv.aero.checks import require_scalar, shown
-from flapenv.whole_file import json_text, write_json
+from flapenv.aero.checks import require_scalar
+from flapenv.whole_file import json_text
 
 __all__ = ["DivergedError", "TrainingConfig", "TrainingResult", "make_model", "summary", "train"]
-
-
-class DivergedError(ArithmeticError):
-    """Raised where training has destroyed its own policy."""
 
 
 def make_model(preset: Preset, task: Task, seed: int) -> BaseAlgorithm:
@@ -106,158 +74,34 @@ def train(
         keep_config(folder, config)
         if resume and is_finished(folder):
             return finished_result(folder, task)
-        curve = _begun(model, task, folder, settings.wingbeats)
-        interrupted = _learn(config, model, curve, folder, progress, checkpoint_seconds)
-        result = TrainingResult(
-            out=folder,
-            verdict=task.judge(flown(model)),
-            wingbeats=model.num_timesteps,
-            seconds=curve.seconds,
-            interrupted=interrupted,
-        )
-        save_results(config, result, model)
-        draw_pictures(f"{config.name}, seed {config.seed}", task, result, flown(model))
-        if report:
-            result = dataclasses.replace(result, report=_reported(config, task, result))
-        if not interrupted:
-            remove_checkpoint(folder / CHECKPOINT)
-        return result
-
-
-def _begun(model: BaseAlgorithm, task: Task, folder: Path, budget: int) -> LearningCurve:
-    """The learning curve of a run, which begins, or goes on from its checkpoint like the learner.
-
-    Raises:
-        ValueError: if the checkpoint is not of this run.
-        OSError: if it cannot be read.
-    """
-    path = folder / CHECKPOINT
-    checkpoint = read_checkpoint(path)
-    if checkpoint is None:
-        return LearningCurve(folder, task, budget)
-    try:
-        found = checkpoint.numbers.get("environment")
-        if found != task.environment:
-            raise ValueError(f"environment = {shown(found)} is not allowed; allowed: {task.environment!r}")
-        learner = checkpoint.numbers.get("learner")
-        if not isinstance(learner, dict):
-            raise ValueError(f"learner = {shown(learner)} is not allowed; allowed: its numbers")
-        restore_learner(model, Checkpoint(numbers=learner, arrays=checkpoint.arrays))
-        return LearningCurve(folder, task, budget, checkpoint.numbers.get("curve"))
-    except (TypeError, ValueError) as problem:
-        raise ValueError(f"{path} is not of this run: {problem}; without that folder the run begins again") from None
-
-
-def _learn(
-    config: TrainingConfig, model: BaseAlgorithm, curve: LearningCurve, folder: Path, progress: bool, apart: float
-) -> bool:
-    """Train until the budget is spent or Ctrl-C, and write the policy; whether it was Ctrl-C.
-
-    Raises:
-        DivergedError: if weights became NaN or inf.
-        OSError: if something cannot be written; the last checkpoint stays.
-    """
-    settings = config.preset.settings
-
-    def make_checkpoint() -> None:
-        _require_finite(model)
-        state = learner_state(model)
-        numbers = {"environment": curve.task.environment, "curve": curve.state(), "learner": state.numbers}
-        write_checkpoint(folder / CHECKPOINT, Checkpoint(numbers=numbers, arrays=state.arrays))
-
-    bar = ProgressBar(curve, settings.wingbeats, shown=progress)
-    checkpoints = Checkpoints(make_checkpoint, seconds=apart)  # first: the others see that rollout begin again
-    callbacks = CallbackList([checkpoints, Annealing(settings), curve, bar])
-    interrupted = False
-    with one_interrupt():
+        learning = Learning(config, task, model, folder)
         try:
-            model.set_logger(configure(str(folder / TENSORBOARD), ["tensorboard"]))
-            left = max(0, settings.wingbeats - model.num_timesteps)
-            model.learn(left, callback=callbacks, reset_num_timesteps=model._last_obs is None)
-        except KeyboardInterrupt:
-            interrupted = True
-        except ValueError:
-            _require_finite(model)
-            raise
-        finally:
-            bar.close()
-        curve.end()
-        if interrupted:
-            print(f"stopped after {model.num_timesteps:,} wingbeats; keeping what was learned", file=sys.stderr)
-        _require_finite(model)
-        if not interrupted:
-            make_checkpoint()
-        curve.measure()
-        write_atomically(folder / POLICY, model.save)
-        save_actor(config, model, folder, {"mean": None, "worst": None})
-    return interrupted
+            interrupted = learning.learn(progress=progress, checkpoint_seconds=checkpoint_seconds)
+            result = TrainingResult(
+                out=folder,
+                verdict=task.judge(flown(model)),
+                wingbeats=model.num_timesteps,
+                seconds=learning.curve.seconds,
+                interrupted=interrupted,
+            )
+            save_results(config, result, model)
+            draw_pictures(f"{config.name}, seed {config.seed}", task, result, flown(model))
+            if report:
+                result = dataclasses.replace(result, report=reported(config, task, result))
+            if not interrupted:
+                remove_checkpoint(folder / CHECKPOINT)  # nothing can go on from it any more
+            return result
+        except OSError as mistake:
+            raise _named(mistake, folder) from mistake
 
 
-def _require_finite(model: BaseAlgorithm) -> None:
-    """Refuse a policy that has been destroyed.
-
-    Raises:
-        DivergedError: if a weight is NaN or inf.
-    """
-    if not all(bool(torch.isfinite(weights).all()) for weights in model.policy.parameters()):
-        raise DivergedError(
-            f"training diverged: after {model.num_timesteps:,} wingbeats weights are not finite, and none of them was "
-            "kept; a smaller learning rate may help"
-        )
-
-
-def save_actor(config: TrainingConfig, model: BaseAlgorithm, out: Path, result: dict[str, Any]) -> None:
-    """Write the policy's network as safetensors with its card, which says what it reached."""
-    described, actor = config.to_dict(), actor_of(model)
-    card = PolicyCard.of(
-        actor,
-        environment=described["environment"],
-        task=described["task"],
-        algorithm=described["algorithm"],
-        preset=config.name,
-        command=config.command,
-        seed=config.seed,
-        wingbeats=model.num_timesteps,
-        result=result,
-        versions=versions(),
-    )
-    save_policy(actor, card, out / POLICY_TENSORS)
-
-
-def save_results(config: TrainingConfig, result: TrainingResult, model: BaseAlgorithm) -> None:
-    """Write results.json, and what the policy reached on its card."""
-    verdict = result.verdict
-    scores = {"mean": verdict.mean, "worst": verdict.worst, "distance": config.preset.make_task().distance}
-    save_actor(config, model, result.out, {**scores, "seconds": round(result.seconds, 1)})
-    write_json(
-        result.out / RESULTS,
-        {
-            **config.to_dict(),
-            "verdict": scores,
-            **verdict.results,
-            "seconds": result.seconds,
-            "wingbeats": result.wingbeats,
-            "interrupted": result.interrupted,
-            "versions": versions(),
-        },
-    )
-
-
-def draw_pictures(title: str, task: Task, result: TrainingResult, policy: Predictor) -> None:
-    """Add the learning curve, under a title, and the task's picture to the run's folder."""
-    write_atomically(result.out / CURVE_PICTURE, draw_learning_curve(result.out, task.distance, title).savefig)
-    write_atomically(result.out / RESULT_PICTURE, task.draw(policy).savefig)
-
-
-def _reported(config: TrainingConfig, task: Task, result: TrainingResult) -> Path | None:
-    """The report, beside results that are kept already: whatever goes wrong with drawing must not cost the run."""
-    from agents.report.of_run import report_of_run
-
-    try:
-        return report_of_run(config, task, result)
-    except Exception as mistake:
-        print(f"the report could not be drawn: {mistake}; the run is kept without it", file=sys.stderr)
-        return None
+def _named(mistake: OSError, folder: Path) -> OSError:
+    """What the system says of a write, with the folder and what helps."""
+    if mistake.errno is None:  # named already
+        told = str(mistake)
+    else:
+        told = f"{folder} cannot be written ({mistake}); allowed: a disk with room, a folder that can be written"
+    return type(mistake)(f"{told}; then --resume {folder} goes on from the last checkpoint")
 
 
 def summary(result: TrainingResult) -> str:

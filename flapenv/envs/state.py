@@ -38,7 +38,7 @@ class EnvState:
 
 def kept_arrays(owner: object) -> dict[str, np.ndarray]:
     """Copies of all that an object keeps, by name; flags as arrays of no axes."""
-    return {name: np.array(value) for name, value in _leaves("", owner)}
+    return {name: np.array(value, order="C") for name, value in _leaves("", owner)}
 
 
 def checked_arrays(
@@ -185,7 +185,7 @@ def _rebuilt(name: str, value: Any, arrays: Mapping[str, np.ndarray], found: lis
     """A value with other arrays; an object is the same one, and what is to be set in it is added to `found`."""
     parts = _parts(value)
     if parts is None:
-        return bool(arrays[name]) if isinstance(value, bool) else arrays[name].copy()
+        return bool(arrays[name]) if isinstance(value, bool) else arrays[name]
     made = {part: _rebuilt(_joined(name, part), own, arrays, found) for part, own in parts.items()}
     if hasattr(type(value), "kept"):
         found += [(value, part, own) for part, own in made.items()]

@@ -1,11 +1,16 @@
 """What happens beside the updates, seen from a run."""
 
+import json
+import math
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
 from stable_baselines3 import PPO
+from stable_baselines3.common.logger import configure
 
-from agents.callbacks import CHECKPOINTS, Annealing, Checkpoints
+from agents.callbacks import Annealing, LearningCurve
+from agents.checkpoint import Checkpoints
 from agents.presets import PPOSettings, Preset
 from agents.run_folder import POLICY
 from agents.training import TrainingConfig, make_model, train
@@ -26,23 +31,94 @@ def test_the_noise_floor_reaches_the_policy_as_the_budget_is_spent() -> None:
     assert seen[-1] < -5
 
 
-def test_a_run_lowers_the_floor_saves_midway_and_keeps_the_last_policy(
+class Clock:
+    """A monotonic clock that is told how late it is."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def monotonic(self) -> float:
+        return self.now
+
+
+@pytest.mark.parametrize(("cost", "apart"), [(0.0, 5.0), (0.01, 5.0), (0.1, 9.9), (1.0, 99.0)])
+def test_checkpoints_are_seconds_apart_and_take_no_more_than_a_hundredth_of_the_time(
+    cost: float, apart: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clock, made = Clock(), []
+    monkeypatch.setattr("agents.checkpoint.callback.time", clock)
+
+    def make() -> None:
+        made.append(clock.now)
+        clock.now += cost
+
+    checkpoints = Checkpoints(make)
+    checkpoints.init_callback(make_model(PRESET, PRESET.make_task(), 0))
+    checkpoints.on_training_start({}, {})
+    for _ in range(4000):
+        checkpoints.on_rollout_start()
+        clock.now += 0.125
+    gaps = [later - earlier - cost for earlier, later in pairwise(made)]
+    assert made[0] == 105
+    assert len(gaps) > 2
+    assert all(apart - 1e-6 < gap < apart + 0.126 for gap in gaps)
+    assert sum(cost for _ in gaps) <= 0.01 * (made[-1] - made[0]) + 1e-9
+
+
+def test_seconds_of_training_go_on_from_those_before_and_leave_out_watching(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    saved, floors = [], []
-    save = Checkpoints.save
+    clock = Clock()
+    monkeypatch.setattr("agents.callbacks.time", clock)
 
-    def watch(self: Checkpoints) -> None:
-        saved.append(self.num_timesteps)
-        floors.append(self.model.policy.noise_floor)
-        save(self)
-        assert PPO.load(tmp_path / POLICY, device="cpu").num_timesteps == self.model.num_timesteps
+    class Slow:
+        def glance(self, _: object) -> tuple[float, float]:
+            clock.now += 7
+            return 0.25, math.nan
 
-    monkeypatch.setattr(Checkpoints, "save", watch)
-    train(TrainingConfig(preset=PRESET), tmp_path, progress=False, report=False)
-    assert len(saved) >= CHECKPOINTS // 2
-    assert 0 < saved[0] < SMALL.wingbeats
-    assert floors[-1] < floors[0] < 0
+    model = make_model(PRESET, PRESET.make_task(), 0)
+    model.set_logger(configure(None, []))
+    curve = LearningCurve(tmp_path, Slow(), 1000)
+    curve.init_callback(model)
+    curve.on_training_start({}, {})
+    clock.now += 2
+    curve._rewards.append(-1.0)
+    curve.measure()
+    clock.now += 1
+    assert curve.seconds == 3
+    state = json.loads(json.dumps(curve.state(), allow_nan=False))
+    text = (tmp_path / "curve.csv").read_text()
+
+    (tmp_path / "curve.csv").write_text(text + "half a li")
+    after = LearningCurve(tmp_path, Slow(), 1000, state)
+    assert (tmp_path / "curve.csv").read_text() == text
+    clock.now += 40
+    after.init_callback(model)
+    after.on_training_start({}, {})
+    clock.now += 2
+    after.end()
+    clock.now += 30
+    assert after.seconds == 5
+    after._rewards.append(-1.0)
+    after.measure()
+    assert after.seconds == 5
+    assert math.isnan(after.rows[0][-1])
+
+
+@pytest.mark.parametrize(
+    "state",
+    [
+        3,
+        {},
+        {"seconds": 1, "next": 2, "rows": [[1]], "rewards": []},
+        {"seconds": "1", "next": 2, "rows": [], "rewards": []},
+    ],
+)
+def test_a_curve_that_goes_on_from_nonsense_is_refused_and_leaves_the_file(state: object, tmp_path: Path) -> None:
+    (tmp_path / "curve.csv").write_text("old")
+    with pytest.raises(ValueError, match="; allowed: seconds, next, rows and rewards"):
+        LearningCurve(tmp_path, PRESET.make_task(), 1000, state)
+    assert (tmp_path / "curve.csv").read_text() == "old"
 
 
 def test_the_learning_curve_watches_and_changes_nothing(tmp_path: Path) -> None:

@@ -33,7 +33,7 @@ def test_a_run_writes_everything_needed_to_repeat_and_judge_it(tmp_path: Path) -
     result = train(TrainingConfig(preset=tiny(), seed=3), tmp_path, progress=False)
     names = {path.name for path in tmp_path.iterdir()}
     files = {"config.json", "results.json", "policy.zip", "policy.safetensors", "policy.json", "curve.csv"}
-    assert names == files | {"tensorboard", "learning_curve.png", "learned.png", "report.html"}
+    assert names == files | {"tensorboard", "learning_curve.png", "learned.png", "report.html", ".lock"}
     assert any((tmp_path / "tensorboard").glob("events.out.tfevents.*"))
 
     config = json.loads((tmp_path / "config.json").read_text(encoding="utf-8"))
