@@ -16,6 +16,7 @@ ENVIRONMENT = {
     "RAY_AUTH_MODE": "token",
     "RAY_USAGE_STATS_ENABLED": "0",
     "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0",  # as there, on Linux too: listen on 127.0.0.1 and nowhere else
+    "RAY_worker_niceness": "0",
     "RAY_health_check_period_ms": "500",  # a node is missed after seconds
     "RAY_health_check_timeout_ms": "2000",
 }

@@ -59,11 +59,16 @@ def started(jobs: int) -> Iterator[ModuleType]:
         ConnectionError: if it does not start.
         ImportError: if Ray is not installed.
     """
-    os.environ |= QUIET | {
-        "RAY_AUTH_MODE": "token",
-        "RAY_AUTH_TOKEN": secrets.token_hex(32),
-        "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0",  # as there, on Linux too: listen on the loopback alone
-    }
+    os.environ |= (
+        QUIET
+        | ONE_THREAD
+        | {  # inherited: Ray's workers start at once then
+            "RAY_worker_niceness": "0",  # Ray's workers else give way to all others, and a plain run does not
+            "RAY_AUTH_MODE": "token",
+            "RAY_AUTH_TOKEN": secrets.token_hex(32),
+            "RAY_ENABLE_WINDOWS_OR_OSX_CLUSTER": "0",  # as there, on Linux too: listen on the loopback alone
+        }
+    )
     os.environ.pop("RAY_ADDRESS", None)
     import ray
 
@@ -98,7 +103,7 @@ def reached(address: str) -> Iterator[ModuleType]:
     os.environ |= QUIET | {"RAY_AUTH_MODE": "token"}
     import ray
 
-    with _connected(ray, address=address):
+    with _connected(ray, address=address, runtime_env={"env_vars": ONE_THREAD}):
         yield ray
 
 
@@ -155,7 +160,6 @@ def _connected(ray: ModuleType, **how: object) -> Iterator[None]:
             ray.init(
                 log_to_driver=False,
                 logging_level=logging.CRITICAL,
-                runtime_env={"env_vars": ONE_THREAD},
                 **how,
             )
         except (Exception, SystemExit) as mistake:  # Ray ends the process where it cannot reach its own
