@@ -12,7 +12,7 @@ from safetensors.numpy import save as tensors_as_bytes
 from agents.actor import Actor
 from agents.policy_card import PolicyCard
 from agents.recurrent_actor import AnyActor, RecurrentActor
-from agents.run_folder import POLICY_TENSORS, write_atomically
+from agents.run_folder import CHECKPOINT, POLICY_TENSORS, write_atomically
 from flapenv.aero.checks import allowed
 from flapenv.read_json import read_object
 from flapenv.whole_file import write_json
@@ -105,7 +105,9 @@ def find_policy(policy: str | os.PathLike[str]) -> Path:
     if path.is_dir():
         inside = path / POLICY_TENSORS
         if not inside.is_file():
-            raise FileNotFoundError(f"{path} holds no {POLICY_TENSORS}; allowed: the folder of a run that saved one")
+            mend = f"; its run goes on with --resume {path}" if (path / CHECKPOINT).is_dir() else ""
+            choice = "the folder of a run that saved one"
+            raise FileNotFoundError(f"{path} holds no {POLICY_TENSORS}; allowed: {choice}{mend}")
         return inside
     if path.exists():
         _require_ending(path)

@@ -16,7 +16,10 @@ import json, os, pathlib, sys, time
 out, name, seed, wingbeats, described, what = sys.argv[1:7]
 out = pathlib.Path(out)
 with open(out.parent / "diary", "a") as diary:
-    diary.write(f"begin {out.stem}\\n")
+    diary.write(f"{'go on' if (out / 'config.json').exists() else 'begin'} {out.stem}\\n")
+if what == "nothing":
+    sys.exit("the disk is full")
+(out / "config.json").write_text(described)
 if what == "fail":
     print("first line", file=sys.stderr)
     sys.exit("the wing fell off")
@@ -27,7 +30,6 @@ if what == "interrupt":
     time.sleep(60)
 time.sleep(0.1)
 print("trained", os.environ["OMP_NUM_THREADS"])
-(out / "config.json").write_text(described)
 lines = "wingbeats,seconds,mean_reward,mean_gap,worst_gap", "10,0.1,-2,0.5,1", "20,0.2,-1,0.004,0.01"
 (out / "curve.csv").write_text("\\n".join(lines))
 results = {

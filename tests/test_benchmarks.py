@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import learning, profile, speed, sweep
+from benchmarks import checkpoints, kills, learning, profile, speed, sweep
 
 
 def test_every_case_runs_and_the_table_has_both_ratios(
@@ -69,3 +69,32 @@ def test_the_cost_of_a_sweep_is_told_beside_plain_processes(
     assert "3 runs of hover-ppo, 5,000 wingbeats, 2 at a time" in out
     assert "overhead of the sweep: " in out
     assert asked == [(name, 3, 5000) for name in ("plain", "sweep", "sweep", "plain")]
+
+
+@pytest.mark.slow
+def test_what_checkpoints_cost_is_told_of_every_kind_of_learner(capsys: pytest.CaptureFixture[str]) -> None:
+    checkpoints.main(["--share", "0.03"])
+    out = capsys.readouterr().out
+    for word in ("hover-ppo", "hover-sac", "adapt-recurrentppo", "share of the time", "MB", "cores"):
+        assert word in out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("preset", kills.LEARNERS)
+def test_runs_killed_at_random_moments_end_as_if_nothing_had_happened(
+    preset: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert kills.main(["--moments", "3", "--presets", preset]) == 0
+    assert "3 of 3 ended equal" in capsys.readouterr().out
+
+
+def test_a_run_that_ends_otherwise_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = iter((1, 1, 2))
+    monkeypatch.setattr(kills, "learned", lambda _: next(found))
+    monkeypatch.setattr(kills, "started", lambda *_: None)
+    monkeypatch.setattr(kills, "ended", lambda _: None)
+    monkeypatch.setattr(kills, "killed", lambda *_: "no checkpoint yet")
+    assert kills.main(["--moments", "2", "--presets", "hover-ppo"]) == 1
+    assert "1 of 2 ended equal" in capsys.readouterr().out

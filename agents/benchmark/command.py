@@ -21,7 +21,7 @@ def benchmark_parser() -> argparse.ArgumentParser:
         description=(
             "How near do the learners come, how surely, how fast? Trains every preset with several seeds, each run in\n"
             "a process of its own on one thread, and writes tables and pictures.\n"
-            "Ctrl-C or a crash loses only the runs under way: the same command goes on where it stopped."
+            "After Ctrl-C or a crash the same command goes on where it was: runs under way from their checkpoints."
         ),
         epilog=(
             "examples:\n"
@@ -31,8 +31,9 @@ def benchmark_parser() -> argparse.ArgumentParser:
             "  python train.py benchmark --report docs/benchmark            redraw the numbers kept there\n\n"
             "runs go into ROOT/PRESET-seedN; OUT gets the numbers (runs.csv, insects.csv, curves.csv, machine.json),\n"
             "table.txt, table.md and pictures. A run that fails is named, and ROOT/PRESET-seedN.part holds what it\n"
-            "printed; the others go on, and the command ends with 1. Tables and pictures are of all finished runs in\n"
-            "ROOT, those of earlier benchmarks too"
+            "printed; the others go on, and the command ends with 1. The same command goes on with it from its\n"
+            "checkpoint; without that folder it begins anew. Tables and pictures are of all finished runs in ROOT,\n"
+            "those of earlier benchmarks too"
         ),
     )
     made.add_argument("--presets", nargs="+", metavar="NAME", help=f"what to train (default {' '.join(BENCHMARKED)})")

@@ -1,6 +1,7 @@
 """Training runs, a process each, a few at a time; what is finished is never redone.
 
-A run is made in `NAME.part` and renamed when it has ended well, so that it is there whole or not at all.
+A run is made in `NAME.part` and renamed when it has ended well, so that it is there whole or not at all. One that has
+not ended well goes on there the next time, from its checkpoint.
 """
 
 import signal
@@ -12,14 +13,14 @@ from tqdm import tqdm
 
 from agents.benchmark.machine import note_machine
 from agents.benchmark.subprocesses import ERRORS, Command, run_all
-from agents.benchmark.training_run import COMMAND, Run, clear, cut_short, is_there, run_command
+from agents.benchmark.training_run import COMMAND, Run, clear, cut_short, goes_on, is_there, run_command
 from agents.folder_lock import locked
 from agents.run_folder import RESULTS
 from flapenv.aero.checks import record
 from flapenv.whole_file import write_json
 
 CommandOf = Callable[[Run, Path], Sequence[str]]
-"""The command line of a run into a folder."""
+"""The command line of a run into a folder; where `goes_on` holds of that, one that goes on with the run there."""
 
 
 @record
@@ -42,6 +43,8 @@ def train_all(
 ) -> Outcome:
     """Run what is not there yet. Ctrl-C ends the runs under way and keeps the finished ones.
 
+    Runs that were under way when an earlier call ended, or was killed, or that failed, go on from their checkpoints.
+
     Args:
         runs: each with a name of its own.
         root: folder of the run folders; made where it is missing.
@@ -59,7 +62,9 @@ def train_all(
     with locked(root) as lock:
         there = {run.name for run in runs if is_there(run, root)}
         for run in runs:
-            clear(root / f"{run.name}.part")
+            part = root / f"{run.name}.part"
+            if run.name in there or not goes_on(part, run):
+                clear(part)
         todo = {run.name: run for run in runs if run.name not in there}
         failed: dict[str, str] = {}
         if todo:
@@ -90,15 +95,26 @@ def train_all(
 
 
 def _prepared(run: Run, root: Path, command: CommandOf) -> Command:
-    """The run's command, with a folder to run into that is marked as our own."""
-    part = root / f"{run.name}.part"
+    """The run's command, with a folder to run into that is marked as our own: a new one, or one in which it goes on."""
+    part, folder = root / f"{run.name}.part", root / run.name
+    if not part.exists() and goes_on(folder, run):
+        folder.rename(part)
     arguments = list(command(run, part))
-    part.mkdir()
-    write_json(part / COMMAND, {"command": arguments})
+    if not part.exists():
+        part.mkdir()
+        write_json(part / COMMAND, {"command": arguments})
     return Command(name=run.name, arguments=arguments, folder=part)
 
 
 def _failure(part: Path, code: int, run: Run) -> str | None:
+    """Why a run that ended with this exit code failed, and what comes of it; None if it did not fail."""
+    why = _reason(part, code, run)
+    if why is None or not goes_on(part, run):
+        return why
+    return f"{why}; the same command goes on with it, or begins it anew once {part} is removed"
+
+
+def _reason(part: Path, code: int, run: Run) -> str | None:
     """Why a run that ended with this exit code failed; None if it did not."""
     if code == 0:
         if not (part / RESULTS).is_file():

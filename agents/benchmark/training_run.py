@@ -1,4 +1,4 @@
-"""One training run in a folder of its own: its command line, and whether it is there, whole and with its settings."""
+"""One training run in a folder of its own: its command line, whether it is there, and whether it can go on."""
 
 import json
 import shutil
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from agents.run_folder import CONFIG, RESULTS
 from flapenv.aero.checks import record
 from flapenv.read_json import read_object
+from flapenv.whole_file import PARTIAL
 
 if TYPE_CHECKING:
     from agents.presets import Preset
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 COMMAND = "command.json"
 """The command of a run, which marks its folder as made by `run_queue`: such a folder may be removed."""
 TRAIN = Path(__file__).parents[2] / "train.py"
+QUIETLY = ("--quiet", "--no-report")
 
 
 def registered() -> "Mapping[str, Preset]":
@@ -64,17 +66,19 @@ class Run:
 
 
 def run_command(run: Run, out: Path) -> list[str]:
-    """The command line of a run into the folder `out`."""
+    """The command line of a run into the folder `out`, which goes on with the run that may lie there."""
+    if goes_on(out, run):
+        return [sys.executable, str(TRAIN), "--resume", str(out), *QUIETLY]
     words = [sys.executable, str(TRAIN), "--preset", run.preset, "--seed", str(run.seed)]
     for name, value in run.arguments.items():
         words += [f"--{name.replace('_', '-')}", value]
     if run.wingbeats is not None:
         words += ["--wingbeats", str(run.wingbeats)]
-    return [*words, "--out", str(out), "--quiet", "--no-report"]
+    return [*words, "--out", str(out), *QUIETLY]
 
 
 def is_there(run: Run, root: Path) -> bool:
-    """Whether a run has been finished, with the same settings; one of our own that was cut short is to be redone.
+    """Whether a run has been finished, with the same settings; one of our own that was cut short is not.
 
     Raises:
         FileExistsError: if a folder is in the way that holds no run.
@@ -100,6 +104,28 @@ def is_there(run: Run, root: Path) -> bool:
     raise ValueError(f"{folder} is in the way: its run {short}; allowed: finished runs, or move it")
 
 
+def goes_on(folder: Path, run: Run) -> bool:
+    """Whether a folder of our own holds this run, begun, so that it goes on from its checkpoint or gets its name.
+
+    Not where its settings are others now, where a file is not as a run writes it, nor where its results say that it
+    came to its end before its budget's: nothing would be trained any more.
+
+    Raises:
+        OSError: if a file cannot be read.
+    """
+    if not all((folder / name).is_file() for name in (COMMAND, CONFIG)):
+        return False
+    described, results = run.described(), folder / RESULTS
+    try:
+        if differences(described, read_object(folder / CONFIG)):
+            return False
+        if not results.is_file() or read_object(results).get("interrupted") is True:
+            return True
+        return cut_short(results, described["settings"]["wingbeats"]) is None
+    except ValueError:
+        return False
+
+
 def cut_short(results: Path, budget: int) -> str | None:
     """How a run ended early, in words; None if it did not.
 
@@ -121,7 +147,7 @@ def cut_short(results: Path, budget: int) -> str | None:
 
 
 def clear(folder: Path) -> None:
-    """Remove what a run of our own left.
+    """Remove what a run of our own left; killed meanwhile, it leaves what is still our own and does not go on.
 
     Raises:
         FileExistsError: for a folder that is not our own, unless it is empty.
@@ -129,10 +155,17 @@ def clear(folder: Path) -> None:
     """
     if not folder.exists():
         return
-    if not (folder / COMMAND).is_file() and any(folder.iterdir()):
+    content = list(folder.iterdir())
+    if not (folder / COMMAND).is_file() and any(not one.name.startswith(PARTIAL) for one in content):
         raise FileExistsError(
             f"{folder} is in the way: it holds no {COMMAND}, so we did not make it; allowed: another folder, or move it"
         )
+    (folder / CONFIG).unlink(missing_ok=True)
+    for one in content:
+        if one.is_dir() and not one.is_symlink():
+            shutil.rmtree(one)
+        elif one.name != COMMAND:
+            one.unlink(missing_ok=True)
     shutil.rmtree(folder)
 
 

@@ -229,9 +229,10 @@ def resumed_config(options: argparse.Namespace) -> Any:
     from agents.run_folder import CONFIG
     from agents.training import TrainingConfig
 
-    beside = [
-        name for name, value in vars(options).items() if name not in BESIDE_RESUME and value not in (None, False, [])
-    ]
+    given = {
+        name: value for name, value in vars(options).items() if value is not None and value is not False and value != []
+    }
+    beside = [name for name in given if name not in BESIDE_RESUME]
     if beside:
         told = f"--{beside[0].replace('_', '-')}" if beside[0] != "settings" else "--set"
         raise ValueError(f"--resume and {told} ask for two runs; allowed: --resume with --quiet or --no-report alone")

@@ -256,3 +256,9 @@ def test_an_environment_with_other_spaces_is_refused() -> None:
         card.require_fit(HoverVectorEnv(2, insect="hawkmoth", problem="fixed-frequency"))
     with pytest.raises(ValueError, match=r"actions of shape \(5,\) do not fit"):
         card.require_fit(HoverVectorEnv(2, problem={"box": {"pitch_phase": np.pi / 2}}))
+
+
+def test_a_run_that_was_killed_has_no_policy_yet_and_is_told_how_it_gets_one(tmp_path: Path) -> None:
+    (tmp_path / "checkpoint").mkdir()
+    with pytest.raises(FileNotFoundError, match=f"holds no policy.safetensors; .*goes on with --resume {tmp_path}"):
+        load_policy(tmp_path)

@@ -25,11 +25,14 @@ def presets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Preset]:
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),
-    [({"interrupted": True}, "was interrupted after 20"), ({"wingbeats": 19}, "ended after 19 of 20 wingbeats")],
+    ("values", "said", "how"),
+    [
+        ({"interrupted": True}, "was interrupted after 20", "go on"),
+        ({"wingbeats": 19}, "ended after 19 of 20 wingbeats", "begin"),  # with the seconds of a run that is over
+    ],
 )
-def test_a_run_that_was_cut_short_is_redone_if_it_is_our_own_and_else_refused(
-    values: dict[str, Any], said: str, tmp_path: Path
+def test_a_run_that_was_cut_short_goes_on_or_is_redone_if_it_is_our_own_and_else_refused(
+    values: dict[str, Any], said: str, how: str, tmp_path: Path
 ) -> None:
     run_benchmark(config(seeds=1), tmp_path, command=faked(), progress=False)
     (tmp_path / "diary").unlink()
@@ -37,7 +40,7 @@ def test_a_run_that_was_cut_short_is_redone_if_it_is_our_own_and_else_refused(
     change(folder / RESULTS, **values)
     assert finished_runs(tmp_path)[1] == {"hover-sac-seed0": f"{folder} was cut short"}
     outcome = run_benchmark(config(seeds=1), tmp_path, command=faked(), progress=False)
-    assert diary(tmp_path) == ["begin hover-sac-seed0", "end hover-sac-seed0"]
+    assert diary(tmp_path) == [f"{how} hover-sac-seed0", "end hover-sac-seed0"]
     assert len(outcome.finished) == 2
     assert finished_runs(tmp_path)[0] == config(seeds=1).runs()
     change(folder / RESULTS, **values)
@@ -57,7 +60,7 @@ def test_a_run_that_says_itself_that_it_was_interrupted_has_failed(tmp_path: Pat
 def test_the_folder_to_be_redone_is_kept_until_then_and_never_anothers(tmp_path: Path) -> None:
     run_benchmark(config("hover-ppo", seeds=1), tmp_path, command=faked(), progress=False)
     folder = tmp_path / "hover-ppo-seed0"
-    change(folder / RESULTS, interrupted=True)
+    change(folder / RESULTS, wingbeats=19)
     broken = faked(hover_ppo_seed0="fail")
     assert run_benchmark(config("hover-ppo", seeds=1), tmp_path, command=broken, progress=False).failed
     assert (folder / RESULTS).exists()

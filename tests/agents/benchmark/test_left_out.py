@@ -12,8 +12,10 @@ from agents.training_config import LAST_SEED
 
 STAND_IN = """
 import json, pathlib, sys
-out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
-name, described = sys.argv[sys.argv.index("--leave-out") + 1], DESCRIBED
+out = pathlib.Path(sys.argv[sys.argv.index("--resume" if "--resume" in sys.argv else "--out") + 1])
+name, described = out.stem, DESCRIBED
+if "--resume" not in sys.argv:
+    assert sys.argv[sys.argv.index("--leave-out") + 1] == name
 if name == "cranefly":
     sys.exit("no wings like it")
 described = json.loads(pathlib.Path(described).read_text())[name]
@@ -72,7 +74,7 @@ def test_a_run_that_left_out_another_species_is_refused(trainer: Path, capsys: p
     assert "task.leave_out = 'hawkmoth' there, wanted 'ladybird'" in capsys.readouterr().err
 
 
-def test_interrupted_runs_are_redone_or_refused(trainer: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_interrupted_runs_go_on_or_are_refused(trainer: Path, capsys: pytest.CaptureFixture[str]) -> None:
     asked = made(trainer)
     results = trainer / "hawkmoth" / "results.json"
     change(results, interrupted=True)

@@ -50,7 +50,7 @@ def test_runs_go_two_at_a_time_with_seeds_outside_on_one_thread_each(tmp_path: P
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_finished_runs_are_skipped_and_interrupted_ones_redone(tmp_path: Path) -> None:
+def test_finished_runs_are_skipped_and_those_that_came_to_nothing_redone(tmp_path: Path) -> None:
     run_benchmark(config(seeds=1), tmp_path, command=faked(), progress=False)
     part = tmp_path / "hover-ppo-seed1.part"
     part.mkdir()
@@ -88,6 +88,8 @@ def test_ctrl_c_ends_what_runs_and_the_same_command_goes_on(tmp_path: Path, caps
         os.waitpid(-1, os.WNOHANG)  # no child is left
     assert benchmark_command(arguments, command=faked()) == 0
     assert diary(tmp_path).count("begin hover-ppo-seed0") == 1
+    assert diary(tmp_path).count("begin hover-sac-seed0") == 1
+    assert "go on hover-sac-seed0" in diary(tmp_path)
     assert (tmp_path / "runs.csv").read_text().count("\n") == 5
     assert f"kept in {tmp_path}" in capsys.readouterr().out
 
