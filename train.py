@@ -13,6 +13,7 @@ COMMANDS = {
     "evaluate": "agents.commands.evaluate",
     "explore": "agents.commands.explore",
     "optimum": "agents.commands.optimum",
+    "sweep": "agents.sweep.command",
 }
 """Where each command NAME is, as NAME_command; without one of them a policy is trained."""
 
@@ -33,7 +34,7 @@ def main(arguments: list[str] | None = None) -> int:
             command = getattr(import_module(COMMANDS.get(name, "agents.commands.train")), f"{name}_command")
             return int(command(rest))
     except ImportError as missing:
-        extra = name if name == "explore" else "train"
+        extra = name if name in ("explore", "sweep") else "train"
         print(f"train.py: {missing}; install what {name} needs: pip install -e '.[{extra}]'", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks import checkpoints, kills, learning, profile, speed
+from benchmarks import checkpoints, kills, learning, profile, speed, sweep
 
 
 def test_every_case_runs_and_the_table_has_both_ratios(
@@ -56,6 +56,19 @@ def test_learning_is_measured_from_the_environment_to_the_whole_learner(
     out = capsys.readouterr().out
     for word in ("environment's step", "adapter", "collection", "PPO", "backward", "Adam"):
         assert word in out
+
+
+def test_the_cost_of_a_sweep_is_told_beside_plain_processes(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked: list[tuple[str, int, int]] = []
+    for name in ("plain", "sweep"):
+        monkeypatch.setattr(sweep, name, lambda _, runs, wingbeats, name=name: asked.append((name, runs, wingbeats)))
+    sweep.main(["--runs", "3", "--wingbeats", "5000"])
+    out = capsys.readouterr().out
+    assert "3 runs of hover-ppo, 5,000 wingbeats, 2 at a time" in out
+    assert "overhead of the sweep: " in out
+    assert asked == [(name, 3, 5000) for name in ("plain", "sweep", "sweep", "plain")]
 
 
 @pytest.mark.slow

@@ -59,7 +59,7 @@ def run_all(
     """
     waiting = iter(commands)
     running: list[tuple[Command, subprocess.Popen[bytes]]] = []
-    with _counted_signals() as signals:
+    with counted_signals() as signals:
         try:
             while True:
                 over = [one for one in running if one[1].poll() is not None]
@@ -107,8 +107,11 @@ def _stop(processes: Sequence[subprocess.Popen[bytes]], signals: list[int]) -> N
 
 
 @contextlib.contextmanager
-def _counted_signals() -> Iterator[list[int]]:
-    """Write signals down rather than raise, so that none falls between the start of a process and its being known."""
+def counted_signals() -> Iterator[list[int]]:
+    """Write signals of `STOPPING` down rather than raise; yields those seen so far.
+
+    So none falls between the start of a process and its being known.
+    """
     seen: list[int] = []
 
     def note(number: int, _: FrameType | None) -> None:

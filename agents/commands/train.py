@@ -46,6 +46,7 @@ def parser() -> argparse.ArgumentParser:
             "  python train.py evaluate hover               a shipped policy, or a run's, judged again\n"
             "  python train.py explore                      a page on which one moves a stroke and sees its cost\n"
             "  python train.py benchmark                    every learner and every task, five seeds each\n"
+            "  python train.py sweep                        seeds, presets, problems, searches; on a cluster too\n"
             "  python train.py optimum hawkmoth             the best stroke and its proven bound, without learning\n"
             "  python train.py compare                      optimisers on the same strokes, with equal budgets\n\n"
             "a run folder holds config.json, results.json, the policy (policy.safetensors with its card policy.json,\n"
