@@ -7,6 +7,8 @@ FLOOR := .venv-floor
 ZOO := .venv-zoo
 RLLIB := .venv-rllib
 AUDIT := .venv-audit
+# Tests run two at a time, the files of one after the other; those that hold times run alone.
+TWO := OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile
 FUZZ_INPUTS ?= 1000000
 ENV_ID ?= flapenv/Hover-v0
 ZOO_ALGO ?= ppo
@@ -46,10 +48,10 @@ train: $(STAMP)  ## Train one policy for all eight insects and print the compari
 	OMP_NUM_THREADS=1 $(BIN)/python train.py $(ARGS)
 
 test: lint  ## Lint, type-check and run every test, the slow learning tests too
-	$(BIN)/python -m pytest -m "not browser" $(ARGS)
+	$(TWO) -m "not browser" $(ARGS)
 
 test-fast: $(STAMP)  ## The tests without those that train a policy
-	$(BIN)/python -m pytest -m "not slow and not browser" $(ARGS)
+	$(TWO) -m "not slow and not browser" $(ARGS)
 
 test-floor: $(FLOOR)/.installed  ## The environments' tests with the oldest Gymnasium, NumPy and SciPy allowed
 	$(FLOOR)/bin/python -m pytest tests/envs $(ARGS)
