@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+import numpy as np
 import torch
 from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.callbacks import CallbackList
@@ -105,8 +106,10 @@ class Learning:
                 model.learn(left, callback=callbacks, reset_num_timesteps=model._last_obs is None)
             except KeyboardInterrupt:
                 interrupted = True
-            except ValueError:
+            except ValueError as mistake:
                 self.require_finite()
+                if not self._acts():
+                    raise self._diverged("what the policy answers is") from mistake
                 raise
             finally:
                 bar.close()
@@ -128,7 +131,19 @@ class Learning:
             DivergedError: if a weight is NaN or inf.
         """
         if not all(bool(torch.isfinite(weights).all()) for weights in self.model.policy.parameters()):
-            raise DivergedError(
-                f"training diverged: after {self.model.num_timesteps:,} wingbeats weights are not finite, and none of "
-                "them was kept; a smaller learning rate may help"
-            )
+            raise self._diverged("weights are")
+
+    def _acts(self) -> bool:
+        """Whether the policy answers what was seen last with numbers: large finite weights may not."""
+        try:
+            actions, _ = self.model.predict(self.model._last_obs, deterministic=True)
+        except ValueError:  # torch has no normal distribution about NaN
+            return False
+        return bool(np.isfinite(actions).all())
+
+    def _diverged(self, what: str) -> DivergedError:
+        """Training that destroyed its policy, in words."""
+        return DivergedError(
+            f"training diverged: after {self.model.num_timesteps:,} wingbeats {what} not finite, and none of them was "
+            "kept; a smaller learning rate may help"
+        )

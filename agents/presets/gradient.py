@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.limits import require_an_update, require_counts
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_scalar
+from flapenv.aero.checks import HUGEST, record, require_scalar
 
 if TYPE_CHECKING:
     from stable_baselines3.common.vec_env import VecEnv
@@ -39,7 +39,7 @@ class GradientSettings:
         require_counts(self, "wingbeats", "rows", "width", "threads")
         require_an_update(self.wingbeats, 3 * self.rows, "3 x rows")
         for name in ("learning_rate", "learning_rate_power"):
-            require_scalar(name, getattr(self, name), 0.0, open_low=True)
+            require_scalar(name, getattr(self, name), 0.0, HUGEST, open_low=True)
 
     def learning_rate_at(self, left: float) -> float:
         """Learning rate of the step before which the fraction `left` of the budget is still to go."""

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.limits import require_counts
-from flapenv.aero.checks import record, require_count, require_scalar
+from flapenv.aero.checks import HUGEST, record, require_count, require_scalar
 
 if TYPE_CHECKING:
     from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
@@ -71,7 +71,7 @@ class OffPolicySettings(ABC):
         require_counts(self, "critics", "threads")
         require_count("learning_starts", self.learning_starts, low=0)
         for name in ("learning_rate", "learning_rate_power"):
-            require_scalar(name, getattr(self, name), 0.0, open_low=True)
+            require_scalar(name, getattr(self, name), 0.0, HUGEST, open_low=True)
         require_scalar("gamma", self.gamma, 0.0, 1.0)
         if self.buffer < self.rows:
             raise ValueError(f"buffer = {self.buffer} is not allowed; allowed: at least rows = {self.rows}")
@@ -142,7 +142,7 @@ class MaximumEntropySettings(OffPolicySettings):
         """Check every field."""
         super().__post_init__()
         for name in ("entropy", "last_entropy"):
-            require_scalar(name, getattr(self, name), 0.0, open_low=True)
+            require_scalar(name, getattr(self, name), 0.0, HUGEST, open_low=True)
         require_scalar("entropy_until", self.entropy_until, 0.0, 1.0, open_low=True)
 
     def entropy_at(self, left: float) -> float:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.limits import require_an_update, require_counts
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_name, require_scalar, shown
+from flapenv.aero.checks import HUGEST, record, require_name, require_scalar, shown
 
 if TYPE_CHECKING:
     from stable_baselines3 import PPO
@@ -83,7 +83,7 @@ class PPOSettings:
         if min(self.minibatch, self.rows * self.steps) < 2:
             raise ValueError(f"minibatch = {self.minibatch} of rows = {self.rows} is not allowed; allowed: 2 and more")
         for name in ("learning_rate", "learning_rate_power", "clip_range", "target_kl", "reward_scale"):
-            require_scalar(name, getattr(self, name), 0.0, open_low=True)
+            require_scalar(name, getattr(self, name), 0.0, HUGEST, open_low=True)
         require_scalar("learning_rate_ratio", self.learning_rate_ratio, 0.0, 1.0, open_low=True)
         require_name("activation", self.activation, ACTIVATIONS)
         if self.gradient_norm is not None:

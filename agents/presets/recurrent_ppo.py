@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from agents.presets.limits import require_an_update, require_counts
 from agents.presets.preset import Preset
-from flapenv.aero.checks import record, require_scalar
+from flapenv.aero.checks import HUGEST, record, require_scalar
 
 if TYPE_CHECKING:
     from sb3_contrib import RecurrentPPO
@@ -60,7 +60,7 @@ class RecurrentPPOSettings:
         )
         require_an_update(self.wingbeats, self.rows * self.steps, "rows x steps")
         for name in ("learning_rate", "clip_range", "target_kl", "gradient_norm"):
-            require_scalar(name, getattr(self, name), 0.0, open_low=True)
+            require_scalar(name, getattr(self, name), 0.0, HUGEST, open_low=True)
         require_scalar("log_std", self.log_std, -20.0, 0.0)
         for name in ("gamma", "gae_lambda"):
             require_scalar(name, getattr(self, name), 0.0, 1.0)

@@ -13,7 +13,7 @@ from stable_baselines3 import PPO
 from agents.policy_file import load_policy
 from agents.presets import GradientSettings, PPOSettings, Preset, as_preset
 from agents.tasks.hover import HoverTask
-from agents.training import TrainingConfig, make_model, summary, train
+from agents.training import DivergedError, TrainingConfig, make_model, summary, train
 from flapenv import INSECTS, Insect, Stroke, Wing, evaluate
 from flapenv.aero.planform import HALF_ELLIPSE
 
@@ -191,3 +191,11 @@ def test_a_gradient_agent_learns_through_the_same_code(tmp_path: Path) -> None:
     assert result.verdict.mean is not None
     assert result.verdict.mean < 0.5
     assert load_policy(tmp_path)[1].algorithm == "gradient"
+
+
+@pytest.mark.parametrize(("rate", "said"), [(1e14, "what the policy answers is not finite"), (1e15, "not finite")])
+def test_training_whose_policy_answers_no_more_numbers_has_diverged(rate: float, said: str, tmp_path: Path) -> None:
+    preset = as_preset("hover-ppo").changed({}, {"wingbeats": 4096, "rows": 256, "learning_rate": rate})
+    with pytest.raises(DivergedError, match=said):
+        train(TrainingConfig(preset=preset), tmp_path, progress=False, report=False)
+    assert not (tmp_path / "policy.safetensors").exists()
