@@ -29,8 +29,8 @@ from flapenv.tables import text_table
 
 TRAIN = Path(__file__).parents[1] / "train.py"
 LEARNERS = {
-    "hover-ppo": ("--wingbeats", "120000", "--set", "rows=256", "--set", "minibatch=128"),
-    "hover-sac": ("--wingbeats", "24000", "--set", "buffer=10000"),
+    "hover-ppo": ("--wingbeats", "240000", "--set", "rows=256", "--set", "minibatch=128"),
+    "hover-sac": ("--wingbeats", "50000", "--set", "buffer=20000"),
 }
 """Presets, and what makes them short; the replay buffer runs over."""
 OFTEN = ("--checkpoint-seconds", "0.2")

@@ -82,8 +82,11 @@ def test_what_checkpoints_cost_is_told_of_every_kind_of_learner(capsys: pytest.C
 @pytest.mark.slow
 @pytest.mark.parametrize("preset", kills.LEARNERS)
 def test_runs_killed_at_random_moments_end_as_if_nothing_had_happened(
-    preset: str, capsys: pytest.CaptureFixture[str]
+    preset: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    short = {"hover-ppo": ("60000", "rows=256"), "hover-sac": ("12000", "buffer=5000")}
+    wingbeats, setting = short[preset]
+    monkeypatch.setitem(kills.LEARNERS, preset, ("--wingbeats", wingbeats, "--set", setting))
     assert kills.main(["--moments", "3", "--presets", preset]) == 0
     assert "3 of 3 ended equal" in capsys.readouterr().out
 
