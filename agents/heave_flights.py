@@ -7,7 +7,7 @@ import numpy as np
 
 from agents.predictor import begin
 from flapenv.aero.checks import record, require_count, shown
-from flapenv.envs.heave import HeaveVectorEnv
+from flapenv.envs.heave_batch import HeaveVectorEnv
 
 Policy = Callable[[np.ndarray], np.ndarray]
 """Observations (rows, n) in, actions (rows, 5) out; `start()`, where it has one, is called before an episode."""

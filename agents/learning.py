@@ -135,8 +135,10 @@ class Learning:
 
     def _acts(self) -> bool:
         """Whether the policy answers what was seen last with numbers: large finite weights may not."""
+        seen = self.model._last_obs
+        assert seen is not None
         try:
-            actions, _ = self.model.predict(self.model._last_obs, deterministic=True)
+            actions, _ = self.model.predict(seen, deterministic=True)
         except ValueError:  # torch has no normal distribution about NaN
             return False
         return bool(np.isfinite(actions).all())

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from flapenv.aero.checks import record
-from flapenv.envs.heave import SUPPORT_UNIT, VELOCITY_UNIT
+from flapenv.envs.heave_batch import SUPPORT_UNIT, VELOCITY_UNIT
 from flapenv.heave.dynamics import HeaveDynamics
 from flapenv.heave.gusts import GustModel
 from flapenv.heave.linear import LinearBeat, linear_beat

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from flapenv.envs.heave import (
+from flapenv.envs.heave_batch import (
     HeaveVectorEnv,
 )
 

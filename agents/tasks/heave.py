@@ -14,7 +14,7 @@ from agents.predictor import Predictor
 from agents.tasks.held_out import HELD_OUT_SEED, NoiseFree
 from agents.tasks.task import Verdict
 from flapenv.aero.checks import record
-from flapenv.envs.heave import HeaveVectorEnv
+from flapenv.envs.heave_batch import HeaveVectorEnv
 from flapenv.envs.insect_choice import listed_insects
 from flapenv.insects import Insect, described
 from flapenv.tables import text_table

@@ -9,7 +9,7 @@ from agents.lqg import RATIOS, draw_front_on, fly_front
 from agents.lqg_controller import lqg
 from agents.predictor import begin
 from flapenv.drawing import BLUE, GREY, RED, require_matplotlib
-from flapenv.envs.heave import HeaveVectorEnv
+from flapenv.envs.heave_batch import HeaveVectorEnv
 from flapenv.insects import Insect
 
 if TYPE_CHECKING:

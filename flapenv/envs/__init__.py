@@ -1,6 +1,7 @@
 """The environments. One step is one wingbeat in every one of them."""
 
-from flapenv.envs.heave import HeaveEnv, HeaveVectorEnv
+from flapenv.envs.heave import HeaveEnv
+from flapenv.envs.heave_batch import HeaveVectorEnv
 from flapenv.envs.hover import HoverEnv
 from flapenv.envs.hover_adapt import HoverAdaptEnv, HoverAdaptVectorEnv
 from flapenv.envs.hover_batch import HoverVectorEnv

@@ -11,7 +11,7 @@ from agents import lqg as module
 from agents.heave_flights import Flights, compare_with_front, fly
 from agents.lqg import fly_front, main
 from agents.lqg_controller import Lqg, design, lqg, proportional_derivative
-from flapenv.envs.heave import HeaveVectorEnv
+from flapenv.envs.heave_batch import HeaveVectorEnv
 
 EPISODES = 48
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from flapenv import INSECTS, HoverProblem, Insect, load_insect
 from flapenv.envs import HoverVectorEnv
 from flapenv.envs.flyable import FLYABLE, require_flyable
-from flapenv.envs.heave import HeaveVectorEnv
+from flapenv.envs.heave_batch import HeaveVectorEnv
 from flapenv.envs.hover_adapt import HoverAdaptVectorEnv
 from flapenv.envs.waveform import WaveformVectorEnv
 from flapenv.insects import pick

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from flown_heave import HOVER, LEAST, MOST, STILL, centred, run
 
-from flapenv.envs.heave import (
+from flapenv.envs.heave_batch import (
     HEIGHT_LIMIT,
     VELOCITY_LIMIT,
     WORST_BEAT,
