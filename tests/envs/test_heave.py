@@ -10,10 +10,10 @@ from flown_heave import HOVER, LEAST, MOST, STILL, centred, run
 
 from flapenv import INSECTS, evaluate, load_insect
 from flapenv.aero.stroke import Stroke
+from flapenv.envs.heave import HeaveEnv
 from flapenv.envs.heave_batch import (
     SUPPORT_UNIT,
     VELOCITY_UNIT,
-    HeaveEnv,
     HeaveVectorEnv,
 )
 

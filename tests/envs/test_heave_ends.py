@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 from flown_heave import HOVER, LEAST, MOST, STILL, centred, run
 
+from flapenv.envs.heave import HeaveEnv
 from flapenv.envs.heave_batch import (
     HEIGHT_LIMIT,
     VELOCITY_LIMIT,
     WORST_BEAT,
     WORST_END,
-    HeaveEnv,
     HeaveVectorEnv,
 )
 
