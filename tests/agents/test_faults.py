@@ -16,6 +16,8 @@ from agents.checkpoint import STATE, read_checkpoint
 from agents.run_folder import CHECKPOINT
 from flapenv.whole_file import json_text
 
+pytestmark = pytest.mark.slow
+
 TOP = Path(__file__).parents[2]
 SHORT = ("--preset", "hover-ppo", "--wingbeats", "30000", "--set", "rows=128", "--set", "minibatch=128")
 QUIETLY = ("--quiet", "--no-report")
