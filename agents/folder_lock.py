@@ -24,7 +24,12 @@ def locked(folder: Path) -> Iterator[int]:
         BlockingIOError: if another holds it; names the process.
         OSError: if the folder cannot be written.
     """
-    descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    try:
+        descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    except OSError as mistake:
+        raise type(mistake)(
+            f"{folder / LOCK} cannot be locked ({mistake.strerror}); allowed: a folder, and a {LOCK} in it, of one's own"
+        ) from None
     with os.fdopen(descriptor, "r+", encoding="utf-8") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -18,8 +18,8 @@ from agents.checkpoint import (
     restore_learner,
     write_checkpoint,
 )
-from agents.interrupts import one_interrupt
-from agents.run_folder import CHECKPOINT, POLICY, TENSORBOARD, write_atomically
+from agents.interrupts import noted_interrupts
+from agents.run_folder import CHECKPOINT, POLICY, TENSORBOARD, require_no_file, write_atomically
 from agents.run_results import save_actor
 from agents.silent_threads import silent_threads
 from agents.tasks import Task
@@ -53,6 +53,8 @@ class Learning:
         """
         self.config, self.task, self.model, self.folder = config, task, model, folder
         budget, path = config.preset.settings.wingbeats, folder / CHECKPOINT
+        require_no_file(path)
+        require_no_file(folder / TENSORBOARD)
         checkpoint = read_checkpoint(path)
         if checkpoint is None:
             self.curve = LearningCurve(folder, task, budget)
@@ -89,6 +91,9 @@ class Learning:
     def learn(self, *, progress: bool, checkpoint_seconds: float) -> bool:
         """Train until the budget is spent or Ctrl-C, and write the policy; whether it was Ctrl-C.
 
+        At the first Ctrl-C training ends before the next rollout, with a checkpoint of just that; at a second one at
+        once, whatever it is doing.
+
         Raises:
             DivergedError: if weights became NaN or inf.
             OSError: if something cannot be written; the last checkpoint stays.
@@ -96,10 +101,10 @@ class Learning:
         model, settings = self.model, self.config.preset.settings
         bar = ProgressBar(self.curve, settings.wingbeats, shown=progress)
         # Checkpoints come first, for what else happens when a rollout begins happens again when it does so again.
-        checkpoints = Checkpoints(self.make_checkpoint, seconds=checkpoint_seconds)
-        callbacks = CallbackList([checkpoints, Annealing(settings), self.curve, bar])
         interrupted = False
-        with one_interrupt(), silent_threads():
+        with noted_interrupts() as interrupts, silent_threads():
+            checkpoints = Checkpoints(self.make_checkpoint, seconds=checkpoint_seconds, stop=lambda: interrupts.asked)
+            callbacks = CallbackList([checkpoints, Annealing(settings), self.curve, bar])
             try:
                 model.set_logger(configure(str(self.folder / TENSORBOARD), ["tensorboard"]))
                 left = max(0, settings.wingbeats - model.num_timesteps)
@@ -112,6 +117,7 @@ class Learning:
                     raise self._diverged("what the policy answers is") from mistake
                 raise
             finally:
+                interrupts.hurrying = False
                 bar.close()
             self.curve.end()
             if interrupted:

@@ -7,7 +7,7 @@ from typing import Any
 
 from agents.checkpoint import STATE
 from agents.policy_file import load_policy
-from agents.run_folder import CHECKPOINT, CONFIG, REPORT, RESULTS, versions
+from agents.run_folder import CHECKPOINT, CONFIG, RECIPE, REPORT, RESULTS, versions
 from agents.tasks import Task
 from agents.training_config import TrainingConfig, TrainingResult
 from flapenv.aero.checks import shown
@@ -34,15 +34,35 @@ def keep_config(folder: Path, config: TrainingConfig) -> None:
     found = read_object(path)
     own = json.loads(json.dumps(described))  # tuples become lists, as in the file
     for key in sorted({*own, *found} - set(TOLD)):
+        if key not in found and key not in RECIPE:  # an older file, or one made by hand, may not tell it
+            continue
         if own.get(key) != found.get(key):
             raise ValueError(
                 f"{path} has {key} = {shown(found.get(key))}; allowed: {shown(own.get(key))}, as the run that goes on"
             )
     before, now = found.get("versions"), versions()
-    if before != now:
+    if before is not None and before != now:
         told = before if isinstance(before, dict) else {}
         others = ", ".join(f"{name} {told.get(name)}, now {now[name]}" for name in now if told.get(name) != now[name])
         print(f"{folder} was begun with {others}: it goes on, perhaps to another end", file=sys.stderr)
+
+
+def require_nothing_lost(folder: Path) -> None:
+    """Refuse to begin anew, for want of a checkpoint, over the policy that Ctrl-C kept.
+
+    Raises:
+        FileExistsError: if there is such a policy and no checkpoint.
+        ValueError: if its results.json is not JSON.
+        OSError: if that cannot be read.
+    """
+    if (folder / CHECKPOINT / STATE).exists() or not (folder / RESULTS).exists():
+        return
+    kept = read_object(folder / RESULTS).get("wingbeats")
+    if kept:
+        raise FileExistsError(
+            f"{folder} holds the policy of {shown(kept)} wingbeats and no checkpoint to go on from; allowed: a run with "
+            f"one, or without {RESULTS} in it, to begin again"
+        )
 
 
 def is_finished(folder: Path) -> bool:

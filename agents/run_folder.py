@@ -17,6 +17,8 @@ POLICY_TENSORS, POLICY_CARD = "policy.safetensors", "policy.json"
 CURVE_PICTURE, RESULT_PICTURE, REPORT, TENSORBOARD = "learning_curve.png", "learned.png", "report.html", "tensorboard"
 PICTURES = (CURVE_PICTURE, RESULT_PICTURE, REPORT)
 FILES = (CONFIG, RESULTS, CHECKPOINT, POLICY, POLICY_TENSORS, POLICY_CARD, CURVE, *PICTURES, TENSORBOARD)
+RECIPE = ("task", "algorithm", "settings")
+"""Keys of config.json that make a preset."""
 RUNS = Path("runs")
 PACKAGES = ("flapenv", "gymnasium", "numpy", "scipy", "sb3-contrib", "stable-baselines3", "torch")
 
@@ -59,7 +61,7 @@ def locked_run_folder(out: Path | None, name: str, *, resume: bool = False) -> I
     if resume and out is None:
         raise ValueError("out = None is not allowed with resume; allowed: the folder of the run")
     folder = out if resume and out is not None else open_run_folder(out, name)
-    require_writable(folder)
+    require_writable(folder, f"--resume {folder}" if resume else f"--out {folder}")
     folder.mkdir(parents=True, exist_ok=True)
     with locked(folder):
         if not resume:
@@ -79,11 +81,25 @@ def require_free_folder(out: Path) -> None:
     taken = [name for name in FILES if (out / name).exists()]
     if taken:
         raise FileExistsError(f"--out {out} holds {', '.join(taken)} already; allowed: a folder without a run in it")
-    require_writable(out)
+    require_writable(out, f"--out {out}")
 
 
-def require_writable(out: Path) -> None:
+def require_no_file(folder: Path) -> None:
+    """Refuse what is in the way of a folder.
+
+    Raises:
+        NotADirectoryError: if something else is there.
+    """
+    if (folder.exists() or folder.is_symlink()) and not folder.is_dir():
+        raise NotADirectoryError(f"{folder} is in the way; allowed: a folder, or nothing there")
+
+
+def require_writable(out: Path, called: str) -> None:
     """Refuse a folder that could not be made or written.
+
+    Args:
+        out: the folder.
+        called: how errors call it.
 
     Raises:
         NotADirectoryError: if it is a file, or lies in one.
@@ -91,9 +107,9 @@ def require_writable(out: Path) -> None:
     """
     nearest = next((one for one in (out, *out.absolute().parents) if one.exists()), Path.cwd())
     if not nearest.is_dir():
-        raise NotADirectoryError(f"--out {out}: {nearest} is a file; allowed: a folder")
+        raise NotADirectoryError(f"{called}: {nearest} is a file; allowed: a folder")
     if not os.access(nearest, os.W_OK | os.X_OK):
-        raise PermissionError(f"--out {out}: {nearest} cannot be written; allowed: a folder that can")
+        raise PermissionError(f"{called}: {nearest} cannot be written; allowed: a folder that can")
 
 
 def real_name(path: str | os.PathLike[str]) -> str:

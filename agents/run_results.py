@@ -65,6 +65,8 @@ def reported(config: TrainingConfig, task: Task, result: TrainingResult) -> Path
 
     try:
         return report_of_run(config, task, result)
+    except OSError:  # a full disk: what is missing can be made later
+        raise
     except Exception as mistake:
         print(f"the report could not be drawn: {mistake}; the run is kept without it", file=sys.stderr)
         return None

@@ -1,6 +1,7 @@
 """Train one policy by a preset, keep it, and judge it against its task's reference."""
 
 import dataclasses
+import sys
 from pathlib import Path
 
 import torch
@@ -10,7 +11,7 @@ from agents.checkpoint import CHECKPOINT_SECONDS, remove_checkpoint
 from agents.learning import DivergedError, Learning
 from agents.presets import Preset
 from agents.remembering import flown
-from agents.resuming import finished_result, is_finished, keep_config
+from agents.resuming import finished_result, is_finished, keep_config, require_nothing_lost
 from agents.run_folder import CHECKPOINT, locked_run_folder
 from agents.run_results import draw_pictures, reported, save_results
 from agents.tasks import Task
@@ -73,8 +74,12 @@ def train(
     with locked_run_folder(out, f"{config.name}-seed{config.seed}", resume=resume) as folder:
         keep_config(folder, config)
         if resume and is_finished(folder):
+            remove_checkpoint(folder / CHECKPOINT)  # what a kill left of it
             return finished_result(folder, task)
+        require_nothing_lost(folder)
         learning = Learning(config, task, model, folder)
+        if progress and model.num_timesteps:
+            print(f"goes on from {model.num_timesteps:,} wingbeats", file=sys.stderr)
         try:
             interrupted = learning.learn(progress=progress, checkpoint_seconds=checkpoint_seconds)
             result = TrainingResult(

@@ -37,19 +37,23 @@ def whole_file(path: Path) -> Iterator[Path]:
     try:
         try:
             yield beside
-            _to_the_disk(beside)
+            to_the_disk(beside)
+            if target.exists():
+                beside.chmod(stat.S_IMODE(target.stat().st_mode))
+            beside.replace(target)
+            to_the_disk(target.parent)
         except OSError as error:
             raise _named(error, path) from error
-        if target.exists():
-            beside.chmod(stat.S_IMODE(target.stat().st_mode))
-        beside.replace(target)
-        _to_the_disk(target.parent)
     finally:
         beside.unlink(missing_ok=True)
 
 
-def _to_the_disk(path: Path) -> None:
-    """Wait until a file's content, or the names in a folder, have reached the disk."""
+def to_the_disk(path: Path) -> None:
+    """Wait until a file's content, or the names in a folder, have reached the disk.
+
+    Raises:
+        OSError: if they have not.
+    """
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)
@@ -64,12 +68,13 @@ def remove_partial(folder: Path) -> None:
         OSError: if the folder cannot be written.
     """
     for left in folder.glob(f"{PARTIAL}*"):
-        left.unlink()
+        if not left.is_dir():
+            left.unlink()
 
 
 def _named(error: OSError, path: Path) -> OSError:
     """The same kind of error, with the file that was to be written and what may be done."""
-    full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+    full = error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
     mend = "a disk with room for it" if full else "a folder that can"
     return type(error)(f"path = {str(path)!r} cannot be written ({error}); allowed: {mend}")
 

@@ -57,7 +57,7 @@ def main(folder: Path, words: list[str]) -> dict[str, Any]:
     found["full"] = ended(process)
     before = tree(run)
     found["full again"] = ended(train("--resume", str(run)))
-    found["harmed"] = [name for name, content in tree(run).items() if "arrays" in name and before.get(name) != content]
+    found["harmed"] = [name for name, content in before.items() if name != ".lock" and tree(run).get(name) != content]
     found["left"] = sorted(before)
     (folder / "filler").unlink()
     found["room"] = ended(train("--resume", str(run)))

@@ -2,12 +2,13 @@
 
 import errno
 import json
+import os
 import stat
 from pathlib import Path
 
 import pytest
 
-from flapenv.whole_file import json_text, whole_file, write_json, write_text
+from flapenv.whole_file import PARTIAL, json_text, remove_partial, whole_file, write_json, write_text
 
 
 def test_a_mistake_leaves_the_old_file_and_nothing_beside_it(tmp_path: Path) -> None:
@@ -80,3 +81,33 @@ def test_json_is_readable_and_refuses_nan(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="JSON"):
         write_json(path, {"gap": float("nan")})
     assert json.loads(path.read_text(encoding="utf-8"))["gap"] is None
+
+
+def test_a_file_is_on_the_disk_before_it_takes_its_place_and_its_name_after(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    done: list[str] = []
+    replace, fsync = Path.replace, os.fsync
+
+    def watched(descriptor: int) -> None:
+        done.append(Path(os.readlink(f"/proc/self/fd/{descriptor}")).name)
+        fsync(descriptor)
+
+    def moved(self: Path, target: Path) -> Path:
+        done.append("in place")
+        return replace(self, target)
+
+    monkeypatch.setattr(os, "fsync", watched)
+    monkeypatch.setattr(Path, "replace", moved)
+    write_text(tmp_path / "a.json", "new")
+    partial, *rest = done
+    assert partial.startswith(PARTIAL)
+    assert rest == ["in place", tmp_path.name]
+
+
+def test_half_written_files_are_removed_and_nothing_else(tmp_path: Path) -> None:
+    for name in (f"{PARTIAL}a.json", "kept.json", ".hidden"):
+        (tmp_path / name).touch()
+    (tmp_path / f"{PARTIAL}folder").mkdir()
+    remove_partial(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"kept.json", ".hidden", f"{PARTIAL}folder"}

@@ -19,7 +19,12 @@ class Checkpoints(BaseCallback):
     """
 
     def __init__(
-        self, make: Callable[[], object], *, seconds: float = CHECKPOINT_SECONDS, share: float = SHARE
+        self,
+        make: Callable[[], object],
+        *,
+        seconds: float = CHECKPOINT_SECONDS,
+        share: float = SHARE,
+        stop: Callable[[], bool] = lambda: False,
     ) -> None:
         """Make checkpoints by calling `make`.
 
@@ -27,15 +32,19 @@ class Checkpoints(BaseCallback):
             make: writes a checkpoint of what has been learned so far.
             seconds: between two, at least.
             share: of the time that they take, at most.
+            stop: whether training is to end, by KeyboardInterrupt, after one checkpoint more.
         """
         super().__init__()
-        self.make, self.seconds, self.share = make, seconds, share
+        self.make, self.seconds, self.share, self.stop = make, seconds, share, stop
         self._due = time.monotonic() + seconds
 
     def _on_training_start(self) -> None:
         self._due = time.monotonic() + self.seconds
 
     def _on_rollout_start(self) -> None:
+        if self.stop():
+            self.make()
+            raise KeyboardInterrupt
         began = time.monotonic()
         if began < self._due:
             return

@@ -36,7 +36,7 @@ Kinds = Mapping[str, Kind]
 
 
 def require_arrays(arrays: Mapping[str, np.ndarray], needed: Kinds, all_or_none: Sequence[Kinds] = ()) -> None:
-    """Require arrays of these names and kinds, of finite numbers, and no others.
+    """Require arrays of these names and kinds and no others; those that are needed of finite numbers.
 
     Args:
         arrays: by name.
@@ -59,7 +59,7 @@ def require_arrays(arrays: Mapping[str, np.ndarray], needed: Kinds, all_or_none:
         array = arrays[name]
         if Kind.of(array) != kind:
             raise ValueError(f"array {name!r} is {Kind.of(array)}; allowed: {kind}")
-        if array.dtype.kind == "f" and not np.isfinite(array).all():
+        if name in needed and array.dtype.kind == "f" and not np.isfinite(array).all():
             raise ValueError(f"array {name!r} holds NaN or inf; allowed: finite numbers")
 
 

@@ -1,7 +1,6 @@
 """A checkpoint on disk: arrays as safetensors, all else as JSON that names them; what is there is whole."""
 
 import hashlib
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,10 +13,11 @@ from safetensors.numpy import save as arrays_as_bytes
 from agents.run_folder import write_atomically
 from flapenv.aero.checks import one_line, record, shown
 from flapenv.read_json import read_object, require_file
-from flapenv.whole_file import json_text, remove_partial, write_text
+from flapenv.whole_file import json_text, remove_partial, to_the_disk, write_text
 
 STATE = "state.json"
 """What makes a checkpoint: with this file's replacement it is the next one."""
+ARRAYS = "arrays-*.safetensors"
 FORMAT = "flapenv checkpoint 1"
 LARGEST_STATE = 2**26
 """A larger `STATE` is not read [bytes]."""
@@ -51,7 +51,9 @@ def write_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
         OSError: if it cannot be written.
         ValueError: for NaN or inf among the numbers.
     """
-    folder.mkdir(mode=0o755, parents=True, exist_ok=True)
+    if not folder.is_dir():
+        folder.mkdir(mode=0o755, parents=True)
+        to_the_disk(folder.parent)
     content = arrays_as_bytes(dict(checkpoint.arrays))
     digest = hashlib.sha256(content).hexdigest()
     name = f"arrays-{digest[:16]}.safetensors"
@@ -61,7 +63,7 @@ def write_checkpoint(folder: Path, checkpoint: Checkpoint) -> None:
     state = {"format": FORMAT, "arrays": arrays, **checkpoint.numbers}
     write_text(folder / STATE, json_text({**state, "sha256": _digest(state)}))
     remove_partial(folder)
-    for other in folder.glob("arrays-*.safetensors"):
+    for other in folder.glob(ARRAYS):
         if other.name != name:
             other.unlink()
 
@@ -116,8 +118,13 @@ def remove_checkpoint(folder: Path) -> None:
         OSError: if it cannot be removed.
     """
     (folder / STATE).unlink(missing_ok=True)
-    if folder.is_dir():
-        shutil.rmtree(folder)
+    if not folder.is_dir():
+        return
+    for left in folder.glob(ARRAYS):
+        left.unlink()
+    remove_partial(folder)
+    if not folder.is_symlink() and not any(folder.iterdir()):  # what others put there stays
+        folder.rmdir()
 
 
 def _digest(state: Mapping[str, Any]) -> str:

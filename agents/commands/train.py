@@ -7,12 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from agents.commands.one_line_parser import OneLineParser, folder, said
+from agents.run_folder import CONFIG, RECIPE
 from flapenv.aero.checks import allowed, shown
 
 CONFIG_KEYS = ("preset", "seed", "environment", "task", "algorithm", "settings", "command", "versions")
 """Of a config.json; `environment`, `command` and `versions` are told, not asked for."""
-RECIPE = ("task", "algorithm", "settings")
-"""Those of them that make a preset."""
 UNCOUNTED = ("--quiet", "--no-report")
 """Options that change nothing about what is learned."""
 UNCOUNTED_VALUES = ("--out", "--checkpoint-seconds")
@@ -226,7 +225,6 @@ def resumed_config(options: argparse.Namespace) -> Any:
         TypeError: for unknown keys or values of another kind.
         OSError: if it cannot be read.
     """
-    from agents.run_folder import CONFIG
     from agents.training import TrainingConfig
 
     given = {
@@ -235,7 +233,9 @@ def resumed_config(options: argparse.Namespace) -> Any:
     beside = [name for name in given if name not in BESIDE_RESUME]
     if beside:
         told = f"--{beside[0].replace('_', '-')}" if beside[0] != "settings" else "--set"
-        raise ValueError(f"--resume and {told} ask for two runs; allowed: --resume with --quiet or --no-report alone")
+        raise ValueError(
+            f"--resume and {told} ask for two runs; allowed: --resume with --quiet, --no-report or --checkpoint-seconds"
+        )
     path = options.resume / CONFIG
     content = read_config(path, str(path))
     return TrainingConfig(

@@ -96,7 +96,12 @@ def test_a_full_disk_and_one_that_cannot_be_written_are_told_and_the_run_goes_on
     command = ["unshare", "--map-root-user", "--mount", sys.executable, str(TOP / "tests" / "small_disk.py")]
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     done = subprocess.run(
-        [*command, str(tmp_path), *SHORT], stdout=subprocess.PIPE, env=environment, text=True, check=True, timeout=MOST
+        [*command, str(tmp_path), *SHORT],
+        stdout=subprocess.PIPE,
+        env=environment,
+        text=True,
+        check=True,
+        timeout=5 * MOST,
     )
     found: dict[str, Any] = json.loads(done.stdout)
     for name in ("full", "full again"):

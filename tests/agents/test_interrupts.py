@@ -4,13 +4,16 @@ import signal
 
 import pytest
 
-from agents.interrupts import one_interrupt
+from agents.interrupts import noted_interrupts
 
 
-def test_the_first_interrupt_raises_and_the_next_ones_wait() -> None:
+def test_the_first_interrupt_asks_the_second_hurries_and_the_next_ones_wait() -> None:
     before = signal.getsignal(signal.SIGINT)
     kept = False
-    with one_interrupt():
+    with noted_interrupts() as interrupts:
+        assert not interrupts.asked
+        signal.raise_signal(signal.SIGINT)
+        assert interrupts.asked
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
@@ -18,3 +21,11 @@ def test_the_first_interrupt_raises_and_the_next_ones_wait() -> None:
         kept = True
     assert kept
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_nothing_hurries_what_is_being_written() -> None:
+    with noted_interrupts() as interrupts:
+        interrupts.hurrying = False
+        for _ in range(3):
+            signal.raise_signal(signal.SIGINT)
+        assert interrupts.asked
