@@ -28,7 +28,7 @@ def locked(folder: Path) -> Iterator[int]:
         descriptor = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     except OSError as mistake:
         raise type(mistake)(
-            f"{folder / LOCK} cannot be locked ({mistake.strerror}); allowed: a folder, and a {LOCK} in it, of one's own"
+            f"{folder / LOCK} cannot be locked ({mistake.strerror}); allowed: a folder and {LOCK} of one's own"
         ) from None
     with os.fdopen(descriptor, "r+", encoding="utf-8") as file:
         try:

@@ -60,8 +60,8 @@ def require_nothing_lost(folder: Path) -> None:
     kept = read_object(folder / RESULTS).get("wingbeats")
     if kept:
         raise FileExistsError(
-            f"{folder} holds the policy of {shown(kept)} wingbeats and no checkpoint to go on from; allowed: a run with "
-            f"one, or without {RESULTS} in it, to begin again"
+            f"{folder} holds the policy of {shown(kept)} wingbeats and no checkpoint to go on from; allowed: a run "
+            f"with one, or without {RESULTS} in it, to begin again"
         )
 
 

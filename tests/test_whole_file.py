@@ -90,7 +90,7 @@ def test_a_file_is_on_the_disk_before_it_takes_its_place_and_its_name_after(
     replace, fsync = Path.replace, os.fsync
 
     def watched(descriptor: int) -> None:
-        done.append(Path(os.readlink(f"/proc/self/fd/{descriptor}")).name)
+        done.append(Path(f"/proc/self/fd/{descriptor}").readlink().name)
         fsync(descriptor)
 
     def moved(self: Path, target: Path) -> Path:

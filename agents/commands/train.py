@@ -233,9 +233,7 @@ def resumed_config(options: argparse.Namespace) -> Any:
     beside = [name for name in given if name not in BESIDE_RESUME]
     if beside:
         told = f"--{beside[0].replace('_', '-')}" if beside[0] != "settings" else "--set"
-        raise ValueError(
-            f"--resume and {told} ask for two runs; allowed: --resume with --quiet, --no-report or --checkpoint-seconds"
-        )
+        raise ValueError(f"--resume and {told} ask for two runs; allowed: --resume, and how to show it")
     path = options.resume / CONFIG
     content = read_config(path, str(path))
     return TrainingConfig(

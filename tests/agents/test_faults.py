@@ -103,6 +103,7 @@ def test_a_full_disk_and_one_that_cannot_be_written_are_told_and_the_run_goes_on
         check=True,
         timeout=5 * MOST,
     )
+    assert done.returncode == 0
     found: dict[str, Any] = json.loads(done.stdout)
     for name in ("full", "full again"):
         assert found[name]["code"] == 2

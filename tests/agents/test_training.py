@@ -14,6 +14,7 @@ from agents.policy_file import load_policy
 from agents.presets import GradientSettings, PPOSettings, Preset, as_preset
 from agents.tasks.hover import HoverTask
 from agents.training import DivergedError, TrainingConfig, make_model, summary, train
+from agents.vec_env import GymnasiumVecEnv
 from flapenv import INSECTS, Insect, Stroke, Wing, evaluate
 from flapenv.aero.planform import HALF_ELLIPSE
 
@@ -97,7 +98,13 @@ def test_an_infeasible_insect_is_trained_and_reported(tmp_path: Path) -> None:
 def test_an_interrupt_before_the_first_wingbeat_still_prints_the_comparison(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("agents.vec_env.GymnasiumVecEnv.reset", lambda _: signal.raise_signal(signal.SIGINT))
+    reset = GymnasiumVecEnv.reset
+
+    def interrupt(env: GymnasiumVecEnv) -> np.ndarray:
+        signal.raise_signal(signal.SIGINT)
+        return reset(env)
+
+    monkeypatch.setattr(GymnasiumVecEnv, "reset", interrupt)
     result = train(TrainingConfig(preset=tiny()), tmp_path, progress=False, report=False)
     assert result.interrupted
     assert result.wingbeats == 0

@@ -266,7 +266,7 @@ def test_a_full_disk_for_the_report_keeps_the_checkpoint_and_another_mistake_in_
 
     with monkeypatch.context() as patch:
         patch.setattr("agents.report.of_run.report_of_run", full)
-        with pytest.raises(OSError, match="a disk with room for it; then --resume .* goes on"):
+        with pytest.raises(OSError, match=r"a disk with room for it; then --resume .* goes on"):
             train(asked, tmp_path, progress=False)
     assert (tmp_path / CHECKPOINT).is_dir()
     assert train(asked, tmp_path, progress=False, resume=True).report == tmp_path / "report.html"
@@ -288,7 +288,7 @@ def test_a_run_that_goes_on_with_other_versions_or_another_config_is_told(
     other = TrainingConfig(preset=asked.preset.changed({}, {"epochs": 2}), name=asked.name, seed=asked.seed)
     with pytest.raises(ValueError, match=r"config.json has settings = .* as the run that goes on"):
         quietly(other, tmp_path, resume=True)
-    with pytest.raises(ValueError, match="config.json has seed = 5; allowed: 6, as the run that goes on"):
+    with pytest.raises(ValueError, match=r"config.json has seed = 5; allowed: 6, as the run that goes on"):
         quietly(TrainingConfig(preset=asked.preset, name=asked.name, seed=6), tmp_path, resume=True)
     train(asked, tmp_path, progress=True, report=False, resume=True)
     said = capsys.readouterr().err
