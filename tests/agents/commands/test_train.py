@@ -77,7 +77,7 @@ def test_what_the_parser_refuses_is_one_line_too(
 def test_training_that_destroys_itself_says_so_and_keeps_no_policy(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked = ["--insects", "hawkmoth", "--wingbeats", "4096", "--set", "learning_rate=1e14", "--quiet"]
+    asked = ["--insects", "hawkmoth", "--wingbeats", "4096", "--set", "learning_rate=1e10", "--quiet"]
     assert train.main([*asked, "--out", str(tmp_path / "run")]) == 1
     assert "training diverged" in capsys.readouterr().err
     assert not (tmp_path / "run" / "policy.safetensors").exists()
