@@ -154,8 +154,13 @@ def require_head(address: str) -> None:
 
 @contextlib.contextmanager
 def _connected(ray: ModuleType, **how: object) -> Iterator[None]:
-    """A connection, closed whatever happens; why there is none, in one line."""
-    try:
+    """A connection, closed whatever happens; why there is none, in one line.
+
+    Ray's listener prints what befalls workers on our standard output, which is for tables: it is set aside meanwhile.
+    """
+    with contextlib.ExitStack() as until, Path(os.devnull).open("w", encoding="utf-8") as nowhere:
+        until.enter_context(contextlib.redirect_stdout(nowhere))
+        until.callback(ray.shutdown)
         try:
             ray.init(
                 log_to_driver=False,
@@ -165,5 +170,3 @@ def _connected(ray: ModuleType, **how: object) -> Iterator[None]:
         except (Exception, SystemExit) as mistake:  # Ray ends the process where it cannot reach its own
             raise ConnectionError(f"Ray did not start: {one_line(mistake)}") from None
         yield
-    finally:
-        ray.shutdown()

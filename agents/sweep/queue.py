@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import ray
 from ray import tune
 from ray.exceptions import RayError
 from ray.tune.search import Searcher
@@ -14,6 +15,7 @@ from agents.sweep.runs import SweepRun, is_finished
 from agents.sweep.sources import Failure, Source
 from agents.sweep.storage import RAY
 from agents.sweep.trials import packed, run_trial
+from agents.sweep.watch import Watch, watched
 from flapenv.aero.checks import one_line
 
 LOSSES = 20
@@ -81,20 +83,23 @@ class RunQueue(Searcher):
 
 
 class Interrupts(tune.Callback):
-    """Ends a sweep between two of Tune's steps when a signal was seen."""
+    """Ends a sweep between two of Tune's steps when a signal was seen, or the cluster is lost."""
 
-    def __init__(self, signals: Sequence[int]) -> None:
-        """Of the signals seen so far."""
-        self._signals = signals
+    def __init__(self, signals: Sequence[int], watch: Watch) -> None:
+        """Of the signals seen so far, and of a cluster."""
+        self._signals, self._watch = signals, watch
 
     def on_step_begin(self, iteration: int, trials: list[Any], **info: Any) -> None:
-        """Look whether there was a signal.
+        """Look whether there was a signal, and whether the cluster lives.
 
         Raises:
-            KeyboardInterrupt: if there was.
+            KeyboardInterrupt: if there was one.
+            ConnectionError: if it does not.
         """
         if self._signals:
             raise KeyboardInterrupt
+        if self._watch.wrong is not None:
+            raise ConnectionError(self._watch.wrong)
 
 
 def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_once: int | None) -> None:
@@ -110,6 +115,7 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
         KeyboardInterrupt: after a signal.
         ConnectionError: if the cluster is lost.
     """
+    watch = watched(ray)
     tuner = tune.Tuner(
         tune.with_resources(run_trial, {"cpu": 1}),
         tune_config=tune.TuneConfig(
@@ -122,13 +128,15 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
             name=uuid.uuid4().hex[:8],
             storage_path=str(storage.absolute() / RAY),
             verbose=0,
-            callbacks=[Interrupts(signals)],
+            callbacks=[Interrupts(signals, watch)],
             failure_config=tune.FailureConfig(max_failures=LOSSES),
         ),
     )
     try:
         tuner.fit()
-    except (RayError, tune.TuneError) as mistake:
+    except (RayError, tune.TuneError, ConnectionError) as mistake:
         raise ConnectionError(
             f"Ray has failed: {one_line(mistake, 300)}; finished runs are kept, and the same command goes on"
         ) from None
+    finally:
+        watch.end()
