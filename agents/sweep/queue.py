@@ -11,7 +11,7 @@ from ray import tune
 from ray.exceptions import RayError
 from ray.tune.search import Searcher
 
-from agents.sweep.runs import SweepRun, is_finished
+from agents.sweep.runs import SweepRun, found_result
 from agents.sweep.sources import Failure, Source
 from agents.sweep.storage import RAY
 from agents.sweep.trials import packed, run_trial
@@ -62,9 +62,9 @@ class RunQueue(Searcher):
             return Failure(why=str(result["failed"]), final=bool(result["final"]))
         deadline = time.monotonic() + (0.0 if error else SEEN)
         try:
-            while not (there := is_finished(run, self._storage)) and time.monotonic() < deadline:
+            while (there := found_result(run, self._storage)) is None and time.monotonic() < deadline:
                 time.sleep(0.5)
-            if there:
+            if there is not None:
                 return None
         except (ValueError, OSError) as mistake:
             return Failure(why=str(mistake), final=False)

@@ -33,7 +33,8 @@ class Watch:
         Args:
             look: tells what is wrong, or None; may raise or never return.
         """
-        self._look, self._wrong, self._answered = look, None, time.monotonic()
+        self._look, self._answered = look, time.monotonic()
+        self._wrong: str | None = None
         self._over = threading.Event()
         threading.Thread(target=self._go, daemon=True).start()
 
@@ -57,7 +58,7 @@ class Watch:
         """Look until something is wrong."""
         while self._wrong is None and not self._over.wait(GLANCE):
             try:
-                self._wrong: str | None = self._look()
+                self._wrong = self._look()
             except Exception:  # it may answer the next time
                 continue
             self._answered = time.monotonic()
