@@ -133,7 +133,7 @@ def plan_of(options: argparse.Namespace) -> tuple[SweepPlan, Path]:
     for text in asked.pop("search", []):
         name, choice = dimension_of(text)
         if name in space:
-            raise ValueError(f"--search {text}: {name} is searched twice; allowed: once")
+            raise ValueError(f"--search {one_line(text, 80)}: {one_line(name, 80)} is searched twice; allowed: once")
         space[name] = choice
     for name, told in (("batch", "--batch"), ("sampler_seed", "--seed")):
         if name in asked and not space:

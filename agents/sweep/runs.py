@@ -11,7 +11,7 @@ from agents.benchmark.training_run import differences
 from agents.presets import Preset
 from agents.run_folder import CONFIG, RESULTS
 from agents.training_config import TrainingConfig
-from flapenv.aero.checks import record, shown
+from flapenv.aero.checks import one_line, record, shown
 from flapenv.read_json import read_object
 
 
@@ -162,4 +162,7 @@ def result_of(run: SweepRun, storage: Path) -> RunResult:
             distance=str(verdict["distance"]),
         )
     except (KeyError, TypeError, ValueError, OverflowError) as mistake:
-        raise ValueError(f"{path} is not a run's: {type(mistake).__name__} {mistake}") from None
+        raise ValueError(
+            f"{path} is not a run's: {type(mistake).__name__} {one_line(mistake, 300)}; "
+            "allowed: the file as it was written"
+        ) from None

@@ -22,7 +22,7 @@ from optuna.trial import FrozenTrial, TrialState
 
 from agents.sweep.plan import SweepPlan
 from agents.sweep.search_space import Choices, Range, is_whole
-from flapenv.aero.checks import record
+from flapenv.aero.checks import one_line, record
 from flapenv.read_json import require_file
 
 NAME = "sweep"
@@ -96,8 +96,8 @@ class Study:
             raise
         except Exception as mistake:  # whatever Optuna makes of lines that it did not write
             raise ValueError(
-                f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {mistake}; allowed: the "
-                "file as it was written, or another --storage"
+                f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {one_line(mistake, 300)}; "
+                "allowed: the file as it was written, or another --storage"
             ) from None
 
     def _raw(self) -> list[FrozenTrial]:
@@ -148,8 +148,7 @@ class Study:
         Args:
             number: of the trial.
             value: its distance; None if it found nothing and would not another time.
-            ended: whether it will not be tried again.
-        failed: which of its runs have no result, and why.
+            failed: which of its runs have no result, and why.
         """
         trial = self._raw()[number]
         if failed:
