@@ -37,7 +37,6 @@ BUILT = (
     "page-answers",
     "actions-hover",
     "search-journal",
-    "search-words",
 )
 READERS = (
     "strokes-json",
