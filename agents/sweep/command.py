@@ -125,7 +125,9 @@ def plan_of(options: argparse.Namespace) -> tuple[SweepPlan, Path]:
         names = {"sampler_seed": "seed", "settings": "set"}
         beside = [f"--{names.get(name, name)}" for name in (*asked, *(set(given) & {"storage", "space"}))]
         if beside:
-            raise ValueError(f"--resume goes without {', '.join(beside)}: the plan is the one that was asked for")
+            raise ValueError(
+                f"--resume goes without {', '.join(beside)}, its plan being kept; allowed: --jobs, --address, --quiet"
+            )
         return read_plan(options.resume), options.resume
     if options.presets is None:
         raise ValueError("a sweep needs presets; allowed: --presets NAME ..., or --resume DIR")

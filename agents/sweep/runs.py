@@ -11,7 +11,7 @@ from agents.benchmark.training_run import differences
 from agents.presets import Preset
 from agents.run_folder import CONFIG, RESULTS
 from agents.training_config import TrainingConfig
-from flapenv.aero.checks import one_line, record, shown
+from flapenv.aero.checks import one_line, record, require_count, require_scalar, shown
 from flapenv.read_json import read_object
 
 
@@ -152,13 +152,13 @@ def result_of(run: SweepRun, storage: Path) -> RunResult:
     found = read_object(path)
     try:
         verdict = found["verdict"]
-        mean, worst = (None if verdict[key] is None else float(verdict[key]) for key in ("mean", "worst"))
+        mean, worst = (None if verdict[key] is None else require_scalar(key, verdict[key]) for key in ("mean", "worst"))
         return RunResult(
             run=run,
             mean=mean,
             worst=worst,
-            wingbeats=int(found["wingbeats"]),
-            seconds=float(found["seconds"]),
+            wingbeats=require_count("wingbeats", found["wingbeats"], low=0),
+            seconds=require_scalar("seconds", found["seconds"], low=0.0),
             distance=str(verdict["distance"]),
         )
     except (KeyError, TypeError, ValueError, OverflowError) as mistake:

@@ -6,8 +6,10 @@ was found before the batch and a generator seeded by the trial's number, so a se
 killed, and on however many machines.
 """
 
+import contextlib
 import itertools
-from collections.abc import Mapping
+import json
+from collections.abc import Iterator, Mapping
 from dataclasses import field
 from pathlib import Path
 from typing import Any
@@ -83,7 +85,10 @@ class Study:
         if journal.exists():
             require_file(journal, str(journal))
             mend_journal(journal)
-        try:
+            with _as_optuna_writes(journal):  # of a last line that is broken it would tell only later
+                for line in journal.read_bytes().splitlines():
+                    json.loads(line)
+        with _as_optuna_writes(journal):
             self._storage = storage = JournalStorage(JournalFileBackend(str(journal)))
             self._study = optuna.create_study(
                 storage=storage, study_name=NAME, direction="minimize", load_if_exists=True, sampler=TPESampler(seed=0)
@@ -92,13 +97,6 @@ class Study:
                 if trial.state is TrialState.RUNNING and set(trial.params) != set(self._space):
                     self._study.tell(trial.number, state=TrialState.FAIL)  # killed while it was chosen: chosen again
             self.trials()
-        except OSError:
-            raise
-        except Exception as mistake:  # whatever Optuna makes of lines that it did not write
-            raise ValueError(
-                f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {one_line(mistake, 300)}; "
-                "allowed: the file as it was written, or another --storage"
-            ) from None
 
     def _raw(self) -> list[FrozenTrial]:
         """Optuna's trials, without those that were killed while they were chosen."""
@@ -128,7 +126,16 @@ class Study:
         return [number for number, one in enumerate(raw) if one.state not in ENDED and number not in self._given_up]
 
     def batch(self) -> list[Trial]:
-        """The trials that are to be run now: those a kill left, or settings chosen anew."""
+        """The trials that are to be run now: those a kill left, or settings chosen anew.
+
+        Raises:
+            ValueError: if what the journal holds cannot be chosen from.
+        """
+        with _as_optuna_writes(self._journal):
+            return self._chosen()
+
+    def _chosen(self) -> list[Trial]:
+        """What `batch` returns."""
         raw = self._raw()
         behind = len(raw) - len(self._going(raw))
         size = self._plan.batch
@@ -164,6 +171,24 @@ class Study:
     def give_up(self, number: int) -> None:
         """Leave a trial to the next time: what stopped it was not its settings."""
         self._given_up.add(number)
+
+
+@contextlib.contextmanager
+def _as_optuna_writes(journal: Path) -> Iterator[None]:
+    """Whatever Optuna makes of lines that it did not write, in one line.
+
+    Raises:
+        ValueError: naming the journal.
+    """
+    try:
+        yield
+    except OSError:
+        raise
+    except Exception as mistake:
+        raise ValueError(
+            f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {one_line(mistake, 300)}; "
+            "allowed: the file as it was written, or another --storage"
+        ) from None
 
 
 def _failed(told: object) -> dict[str, str]:

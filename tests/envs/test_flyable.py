@@ -87,7 +87,7 @@ def test_from_a_thrips_to_an_ornithopter_of_16_m_everything_flies() -> None:
 @pytest.mark.parametrize(("name", "length"), [("fruitfly", 0.5e-6), ("hawkmoth", 8e3)])
 def test_a_thousand_times_smaller_or_larger_is_refused(name: str, length: float) -> None:
     insect = scaled(name, length / load_insect(name).wing.length)
-    with pytest.raises(ValueError, match="insect mine: wing length = .* is not allowed in an environment"):
+    with pytest.raises(ValueError, match=r"insect mine: wing length = .* is not allowed in an environment"):
         require_flyable([insect], HoverModel())
 
 

@@ -121,7 +121,8 @@ def journal(data: bytes) -> Any:
         elif how == 1:
             lines.insert(draw.index(len(lines)), lines[place])
         elif how == 2:
-            lines[place] = json.dumps(changed(json.loads(lines[place]), draw)).encode() + b"\n"
+            told = json.loads(draw.one_of(journal_lines()))
+            lines[place] = json.dumps(changed(told, draw)).encode() + b"\n"
         else:
             lines[place] = damaged(lines[place], draw)
     path.write_bytes(b"".join(lines) if draw.byte() % 16 else draw.rest())

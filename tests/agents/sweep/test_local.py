@@ -88,7 +88,7 @@ def addresses(process: int) -> set[str]:
     inodes = set()
     for one in below:
         for descriptor in Path(f"/proc/{one}/fd").iterdir():
-            if descriptor.is_symlink() and (match := re.fullmatch(r"socket:\[(\d+)\]", os.readlink(descriptor))):
+            if descriptor.is_symlink() and (match := re.fullmatch(r"socket:\[(\d+)\]", str(descriptor.readlink()))):
                 inodes.add(match[1])
     found = set()
     for table in ("tcp", "tcp6"):
