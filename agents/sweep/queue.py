@@ -114,6 +114,7 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
     Raises:
         KeyboardInterrupt: after a signal.
         ConnectionError: if the cluster is lost.
+        OSError: if the storage cannot be written.
     """
     watch = watched(ray)
     tuner = tune.Tuner(
@@ -137,6 +138,11 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
     except (RayError, tune.TuneError, ConnectionError) as mistake:
         raise ConnectionError(
             f"Ray has failed: {one_line(mistake, 300)}; finished runs are kept, and the same command goes on"
+        ) from None
+    except OSError as mistake:  # of a full disk, say
+        raise OSError(
+            f"{storage} cannot be written ({one_line(mistake, 300)}); finished runs are kept, and the same command "
+            "goes on when it can"
         ) from None
     finally:
         watch.end()
