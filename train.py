@@ -1,10 +1,10 @@
 """Train policies that hover with the least power, judge them, and compare them with optimisers: see --help."""
 
-import os
 import sys
 import warnings
 from importlib import import_module
 
+from agents.file_rights import keep_others_from_writing
 from flapenv.aero.checks import allowed, shown
 
 COMMANDS = {
@@ -21,7 +21,7 @@ COMMANDS = {
 def main(arguments: list[str] | None = None) -> int:
     """Run the command asked for; 0 on success, 2 for bad input, 130 after Ctrl-C."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    os.umask(os.umask(0o022) | 0o022)  # whatever wrote it, no file is for others to change
+    keep_others_from_writing()
     name, rest = ("train", arguments)
     if arguments and not arguments[0].startswith("-"):
         name, *rest = arguments

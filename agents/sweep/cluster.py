@@ -11,6 +11,7 @@ import re
 import secrets
 import shutil
 import socket
+import stat
 import subprocess
 import sys
 import tempfile
@@ -27,6 +28,8 @@ GREETING = 15.0
 """Seconds that what accepted it has to prove itself the head of a cluster."""
 OBJECTS = 100 * 2**20
 """Memory for Ray's own objects, of which a sweep has hardly any [bytes]; the least that Ray takes is 75 MB."""
+TEMPORARY = "flapenv-"
+"""Begins the name of a folder of Ray's sockets and logs; the process that made it follows."""
 TOKEN_HINT = (
     "the cluster's token in the file that RAY_AUTH_TOKEN_PATH names, in ~/.ray/auth_token, or in RAY_AUTH_TOKEN"
 )
@@ -73,7 +76,8 @@ def started(jobs: int) -> Iterator[ModuleType]:
     import ray
 
     short = "/tmp" if Path("/tmp").is_dir() else None  # Ray's sockets lie in it, whose paths must be short
-    folder = tempfile.mkdtemp(prefix="flapenv-", dir=short)
+    _remove_left(Path(short or tempfile.gettempdir()))
+    folder = tempfile.mkdtemp(prefix=f"{TEMPORARY}{os.getpid()}-", dir=short)
     try:
         with _connected(
             ray,
@@ -107,6 +111,28 @@ def reached(address: str) -> Iterator[ModuleType]:
         yield ray
 
 
+def _remove_left(place: Path) -> None:
+    """Remove our folders of processes that were killed."""
+    for folder in place.glob(f"{TEMPORARY}*-*"):
+        number = folder.name.removeprefix(TEMPORARY).split("-")[0]
+        with contextlib.suppress(OSError):
+            about = folder.lstat()
+            ours = about.st_uid == os.getuid() and stat.S_ISDIR(about.st_mode)
+            if ours and number.isascii() and number.isdigit() and not _lives(int(number)):
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _lives(process: int) -> bool:
+    """Whether a process is there, of whomever."""
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return True
+
+
 def _require_answer(address: str) -> None:
     """Refuse an address that is none, or where nothing listens."""
     match = re.fullmatch(r"(?:\[(?P<six>[0-9a-fA-F:.]+)\]|(?P<host>[\w.-]+)):(?P<port>\d{1,5})", address)
@@ -121,6 +147,17 @@ def _require_answer(address: str) -> None:
         ) from None
 
 
+def _has_token() -> bool:
+    """Whether Ray will find a token where it looks; without one it ends the process."""
+    if os.environ.get("RAY_AUTH_TOKEN", "").strip():
+        return True
+    named = os.environ.get("RAY_AUTH_TOKEN_PATH")
+    try:
+        return bool((Path(named) if named else Path.home() / ".ray" / "auth_token").read_bytes().strip())
+    except (OSError, ValueError, RuntimeError):
+        return False
+
+
 def require_head(address: str) -> None:
     """Refuse an address that is no head of a cluster, or does not accept our token; within seconds.
 
@@ -130,9 +167,11 @@ def require_head(address: str) -> None:
     Raises:
         ValueError: for another form.
         ConnectionError: if it does not answer, or not as a head.
-        PermissionError: if it does not accept the token.
+        PermissionError: without a token, or if it does not accept ours.
     """
     _require_answer(address)
+    if not _has_token():
+        raise PermissionError(f"--address {address}: no token was given; allowed: {TOKEN_HINT}")
     command = [sys.executable, "-c", GREET, address]
     environment = {**os.environ, **QUIET, "RAY_AUTH_MODE": "token"}
     try:
@@ -142,9 +181,7 @@ def require_head(address: str) -> None:
     except subprocess.TimeoutExpired:
         code = 1
     if code == 3:
-        raise PermissionError(
-            f"--address {address} does not accept the token, or none was given; allowed: {TOKEN_HINT}"
-        )
+        raise PermissionError(f"--address {address} does not accept the token; allowed: {TOKEN_HINT}")
     if code:
         raise ConnectionError(
             f"--address {address} answers, but not as the head of a Ray cluster; allowed: HOST:PORT of a head that was "
@@ -154,8 +191,13 @@ def require_head(address: str) -> None:
 
 @contextlib.contextmanager
 def _connected(ray: ModuleType, **how: object) -> Iterator[None]:
-    """A connection, closed whatever happens; why there is none, in one line."""
-    try:
+    """A connection, closed whatever happens; why there is none, in one line.
+
+    Ray's listener prints what befalls workers on our standard output, which is for tables: it is set aside meanwhile.
+    """
+    with Path(os.devnull).open("w", encoding="utf-8") as nowhere, contextlib.ExitStack() as until:
+        until.enter_context(contextlib.redirect_stdout(nowhere))
+        until.callback(ray.shutdown)
         try:
             ray.init(
                 log_to_driver=False,
@@ -165,5 +207,3 @@ def _connected(ray: ModuleType, **how: object) -> Iterator[None]:
         except (Exception, SystemExit) as mistake:  # Ray ends the process where it cannot reach its own
             raise ConnectionError(f"Ray did not start: {one_line(mistake)}") from None
         yield
-    finally:
-        ray.shutdown()

@@ -14,7 +14,7 @@ from agents.sweep.plan import SweepPlan
 from agents.sweep.search_space import FORMS, dimension_of, read_space
 from agents.sweep.storage import read_plan
 from agents.sweep.sweep import Outcome, run_sweep
-from flapenv.aero.checks import require_count
+from flapenv.aero.checks import one_line, require_count
 from flapenv.insects import INSECTS
 from flapenv.problem import PROBLEMS
 
@@ -92,7 +92,7 @@ def sweep_command(arguments: list[str]) -> int:
         arguments: the words after `sweep`.
 
     Returns:
-        0 if every run is there, 1 if one failed, 2 for bad input, 130 after Ctrl-C.
+        0 if every run is there, 1 if one is not, 2 for bad input, 130 after Ctrl-C.
 
     Raises:
         ImportError: if Ray is not installed.
@@ -125,7 +125,9 @@ def plan_of(options: argparse.Namespace) -> tuple[SweepPlan, Path]:
         names = {"sampler_seed": "seed", "settings": "set"}
         beside = [f"--{names.get(name, name)}" for name in (*asked, *(set(given) & {"storage", "space"}))]
         if beside:
-            raise ValueError(f"--resume goes without {', '.join(beside)}: the plan is the one that was asked for")
+            raise ValueError(
+                f"--resume goes without {', '.join(beside)}, its plan being kept; allowed: --jobs, --address, --quiet"
+            )
         return read_plan(options.resume), options.resume
     if options.presets is None:
         raise ValueError("a sweep needs presets; allowed: --presets NAME ..., or --resume DIR")
@@ -133,7 +135,7 @@ def plan_of(options: argparse.Namespace) -> tuple[SweepPlan, Path]:
     for text in asked.pop("search", []):
         name, choice = dimension_of(text)
         if name in space:
-            raise ValueError(f"--search {text}: {name} is searched twice; allowed: once")
+            raise ValueError(f"--search {one_line(text, 80)}: {one_line(name, 80)} is searched twice; allowed: once")
         space[name] = choice
     for name, told in (("batch", "--batch"), ("sampler_seed", "--seed")):
         if name in asked and not space:
@@ -145,12 +147,13 @@ def plan_of(options: argparse.Namespace) -> tuple[SweepPlan, Path]:
 def _conclude(outcome: Outcome, storage: Path) -> int:
     """Print what is there, and say what is not."""
     print(f"{outcome.table}\n\nkept in {storage}", flush=True)
-    if outcome.interrupted or outcome.failed:
+    incomplete = bool(outcome.failed) or outcome.finished < outcome.total
+    if outcome.interrupted or incomplete:
         how = "stopped with" if outcome.interrupted else "ended with"
-        failed = f" (failed: {', '.join(outcome.failed)})" if outcome.failed else ""
+        failed = f" (failed: {one_line(', '.join(outcome.failed))})" if outcome.failed else ""
         print(
             f"train.py sweep: {how} {outcome.finished} of {outcome.total} runs in {storage}{failed}; "
             "the same command goes on",
             file=sys.stderr,
         )
-    return 130 if outcome.interrupted else 1 if outcome.failed else 0
+    return 130 if outcome.interrupted else 1 if incomplete else 0

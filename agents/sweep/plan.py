@@ -1,6 +1,7 @@
 """What a sweep runs: seeds × presets × problems, or a search; kept in sweep.json, so that it can be gone on with."""
 
 import json
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, field
 from functools import cached_property
@@ -10,7 +11,7 @@ from agents.presets import PRESETS, Preset
 from agents.sweep.runs import SweepRun, run_of
 from agents.sweep.search_space import Choices, Range, require_settings, space_of
 from agents.training_config import LAST_SEED
-from flapenv.aero.checks import record, require_count, require_name
+from flapenv.aero.checks import LONGEST_SHOWN, one_line, record, require_count, require_name, shown
 from flapenv.problem import PROBLEMS
 
 MOST_SEEDS = 10_000
@@ -51,6 +52,8 @@ class SweepPlan:
         """Check every field, and that every preset takes them, before anything has run."""
         for name in ("presets", "problems", "insects"):
             self._require_names(name)
+        for name in ("settings", "search"):
+            _require_object(name, getattr(self, name))
         for name in self.presets:
             require_name("presets", name, PRESETS)
         if self.problems is not None:
@@ -77,10 +80,13 @@ class SweepPlan:
         if value is None and name != "presets":
             return
         if isinstance(value, str) or not isinstance(value, Sequence) or not value:
-            raise TypeError(f"{name} = {value!r} is not allowed; allowed: a list of at least one name")
-        twice = [one for one in value if list(value).count(one) > 1]
-        if twice:
-            raise ValueError(f"{name} name {twice[0]} more than once; allowed: each once")
+            raise TypeError(f"{name} = {shown(value)} is not allowed; allowed: a list of at least one name")
+        for one in value:
+            if not isinstance(one, str):
+                raise TypeError(f"{name} hold {shown(one)}; allowed: names")
+        most, times = Counter(value).most_common(1)[0]
+        if times > 1:
+            raise ValueError(f"{name} name {one_line(most, LONGEST_SHOWN)} more than once; allowed: each once")
         object.__setattr__(self, name, tuple(value))
 
     def _check_search(self) -> None:
@@ -97,7 +103,9 @@ class SweepPlan:
                 raise ValueError(f"{name} = {', '.join(getattr(self, name))} of a search; allowed: one")
         twice = [name for name in self.search if name in self.settings]
         if twice:
-            raise ValueError(f"setting {twice[0]} is both set and searched; allowed: one of the two")
+            raise ValueError(
+                f"setting {one_line(twice[0], LONGEST_SHOWN)} is both set and searched; allowed: one of the two"
+            )
         [[_, _, base]] = self._bases
         require_settings(self.search, base)
 
@@ -173,9 +181,14 @@ class SweepPlan:
             ValueError: for a value that is not allowed.
         """
         for name in ("settings", "search"):
-            if not isinstance(content.get(name, {}), Mapping):
-                raise TypeError(f"{called}: {name} = {content[name]!r} is not allowed; allowed: an object")
+            _require_object(f"{called}: {name}", content.get(name, {}))
         try:
             return cls(**{**content, "search": space_of(content.get("search", {}), "search")})
         except (TypeError, ValueError) as mistake:
             raise type(mistake)(f"{called}: {mistake}") from None
+
+
+def _require_object(field: str, value: object) -> None:
+    """Refuse what has no names."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{field} = {shown(value)} is not allowed; allowed: an object")

@@ -6,14 +6,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import ray
 from ray import tune
 from ray.exceptions import RayError
 from ray.tune.search import Searcher
 
-from agents.sweep.runs import SweepRun, is_finished
+from agents.sweep.runs import SweepRun, found_result
 from agents.sweep.sources import Failure, Source
 from agents.sweep.storage import RAY
 from agents.sweep.trials import packed, run_trial
+from agents.sweep.watch import Watch, watched
 from flapenv.aero.checks import one_line
 
 LOSSES = 20
@@ -60,9 +62,9 @@ class RunQueue(Searcher):
             return Failure(why=str(result["failed"]), final=bool(result["final"]))
         deadline = time.monotonic() + (0.0 if error else SEEN)
         try:
-            while not (there := is_finished(run, self._storage)) and time.monotonic() < deadline:
+            while (there := found_result(run, self._storage)) is None and time.monotonic() < deadline:
                 time.sleep(0.5)
-            if there:
+            if there is not None:
                 return None
         except (ValueError, OSError) as mistake:
             return Failure(why=str(mistake), final=False)
@@ -81,20 +83,23 @@ class RunQueue(Searcher):
 
 
 class Interrupts(tune.Callback):
-    """Ends a sweep between two of Tune's steps when a signal was seen."""
+    """Ends a sweep between two of Tune's steps when a signal was seen, or the cluster is lost."""
 
-    def __init__(self, signals: Sequence[int]) -> None:
-        """Of the signals seen so far."""
-        self._signals = signals
+    def __init__(self, signals: Sequence[int], watch: Watch) -> None:
+        """Of the signals seen so far, and of a cluster."""
+        self._signals, self._watch = signals, watch
 
     def on_step_begin(self, iteration: int, trials: list[Any], **info: Any) -> None:
-        """Look whether there was a signal.
+        """Look whether there was a signal, and whether the cluster lives.
 
         Raises:
-            KeyboardInterrupt: if there was.
+            KeyboardInterrupt: if there was one.
+            ConnectionError: if it does not.
         """
         if self._signals:
             raise KeyboardInterrupt
+        if self._watch.wrong is not None:
+            raise ConnectionError(self._watch.wrong)
 
 
 def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_once: int | None) -> None:
@@ -109,7 +114,9 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
     Raises:
         KeyboardInterrupt: after a signal.
         ConnectionError: if the cluster is lost.
+        OSError: if the storage cannot be written.
     """
+    watch = watched(ray)
     tuner = tune.Tuner(
         tune.with_resources(run_trial, {"cpu": 1}),
         tune_config=tune.TuneConfig(
@@ -122,13 +129,20 @@ def run_all_trials(queue: RunQueue, storage: Path, signals: Sequence[int], at_on
             name=uuid.uuid4().hex[:8],
             storage_path=str(storage.absolute() / RAY),
             verbose=0,
-            callbacks=[Interrupts(signals)],
+            callbacks=[Interrupts(signals, watch)],
             failure_config=tune.FailureConfig(max_failures=LOSSES),
         ),
     )
     try:
         tuner.fit()
-    except (RayError, tune.TuneError) as mistake:
+    except (RayError, tune.TuneError, ConnectionError) as mistake:
         raise ConnectionError(
             f"Ray has failed: {one_line(mistake, 300)}; finished runs are kept, and the same command goes on"
         ) from None
+    except OSError as mistake:  # of a full disk, say
+        raise OSError(
+            f"{storage} cannot be written ({one_line(mistake, 300)}); finished runs are kept, and the same command "
+            "goes on when it can"
+        ) from None
+    finally:
+        watch.end()

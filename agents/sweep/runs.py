@@ -11,7 +11,7 @@ from agents.benchmark.training_run import differences
 from agents.presets import Preset
 from agents.run_folder import CONFIG, RESULTS
 from agents.training_config import TrainingConfig
-from flapenv.aero.checks import record
+from flapenv.aero.checks import one_line, record, require_count, require_scalar, shown
 from flapenv.read_json import read_object
 
 
@@ -109,10 +109,19 @@ def is_finished(run: SweepRun, storage: Path) -> bool:
 
     Raises:
         ValueError: if the folder holds a run with other settings, or a file is not as a run writes it.
-        OSError: if a file cannot be read.
+        OSError: if a file cannot be read, or the folder is a file or something else's.
     """
     folder = storage / run.name
+    if not folder.is_dir():
+        if folder.exists() or folder.is_symlink():
+            raise NotADirectoryError(f"{folder} is no folder; allowed: a run's folder, or nothing of that name")
+        return False
     if not (folder / CONFIG).is_file():
+        others = sorted(one.name for one in folder.iterdir() if not one.name.startswith("."))
+        if others:
+            raise FileExistsError(
+                f"{folder} holds {shown(others[0])} but no {CONFIG}; allowed: a run's folder, or an empty one"
+            )
         return False
     differs = differences(run.described(), read_object(folder / CONFIG))
     if differs:
@@ -120,6 +129,16 @@ def is_finished(run: SweepRun, storage: Path) -> bool:
             f"{folder} was made with other settings: {'; '.join(differs)}; allowed: the same, or another folder"
         )
     return resuming.is_finished(folder)
+
+
+def found_result(run: SweepRun, storage: Path) -> RunResult | None:
+    """What a run reached, or None if it is not finished.
+
+    Raises:
+        ValueError: if the folder holds a run with other settings, or a file is not as a run writes it.
+        OSError: if a file cannot be read, or the folder is a file or something else's.
+    """
+    return result_of(run, storage) if is_finished(run, storage) else None
 
 
 def result_of(run: SweepRun, storage: Path) -> RunResult:
@@ -133,14 +152,17 @@ def result_of(run: SweepRun, storage: Path) -> RunResult:
     found = read_object(path)
     try:
         verdict = found["verdict"]
-        mean, worst = (None if verdict[key] is None else float(verdict[key]) for key in ("mean", "worst"))
+        mean, worst = (None if verdict[key] is None else require_scalar(key, verdict[key]) for key in ("mean", "worst"))
         return RunResult(
             run=run,
             mean=mean,
             worst=worst,
-            wingbeats=int(found["wingbeats"]),
-            seconds=float(found["seconds"]),
+            wingbeats=require_count("wingbeats", found["wingbeats"], low=0),
+            seconds=require_scalar("seconds", found["seconds"], low=0.0),
             distance=str(verdict["distance"]),
         )
     except (KeyError, TypeError, ValueError, OverflowError) as mistake:
-        raise ValueError(f"{path} is not a run's: {type(mistake).__name__} {mistake}") from None
+        raise ValueError(
+            f"{path} is not a run's: {type(mistake).__name__} {one_line(mistake, 300)}; "
+            "allowed: the file as it was written"
+        ) from None

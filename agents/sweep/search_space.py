@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from flapenv.aero.checks import allowed, record, require_flag, require_scalar, shown
+from flapenv.aero.checks import LONGEST_SHOWN, allowed, one_line, record, require_flag, require_scalar, shown
 from flapenv.read_json import read_object
 
 if TYPE_CHECKING:
@@ -114,10 +114,12 @@ def dimension_of(text: str) -> tuple[str, Range | Choices]:
             return name, Choices(values=[_value(one) for one in told.split(",")])
         low, high, *rest = told.split(":")
         if rest not in ([], ["log"]):
-            raise ValueError(f"{':'.join(rest)!r} follows the ends")
+            raise ValueError(f"{shown(':'.join(rest))} follows the ends")
         return name, Range(low=_number(low), high=_number(high), log=bool(rest))
     except (ValueError, TypeError) as mistake:
-        raise ValueError(f"--search {text} is not allowed: {mistake}; allowed: {FORMS}") from None
+        raise ValueError(
+            f"--search {one_line(text, LONGEST_SHOWN)} is not allowed: {mistake}; allowed: {FORMS}"
+        ) from None
 
 
 def _number(text: str) -> float:
@@ -125,9 +127,12 @@ def _number(text: str) -> float:
     try:
         return int(text)
     except ValueError:
-        number = float(text)
+        try:
+            number = float(text)
+        except ValueError:
+            raise ValueError(f"{shown(text)} is no number") from None
     if not math.isfinite(number):
-        raise ValueError(f"{text} is not finite")
+        raise ValueError(f"{one_line(text, LONGEST_SHOWN)} is not finite")
     return number
 
 
@@ -161,12 +166,12 @@ def space_of(content: Mapping[str, Any], called: str) -> Space:
             elif isinstance(told, Mapping):
                 for key in told:
                     if key not in KEYS:
-                        raise TypeError(f"key {key!r} is unknown; {allowed(key, KEYS)}")
+                        raise TypeError(f"key {shown(key)} is unknown; {allowed(key, KEYS)}")
                 space[name] = Range(**told)
             else:
                 raise TypeError(f"{shown(told)} is no range and no list; allowed: low, high and log, or a list")
         except (ValueError, TypeError) as mistake:
-            raise type(mistake)(f"{called}: {name}: {mistake}") from None
+            raise type(mistake)(f"{called}: {one_line(name, LONGEST_SHOWN)}: {mistake}") from None
     return space
 
 
@@ -193,10 +198,10 @@ def require_settings(space: Space, preset: "Preset") -> None:
             try:
                 preset.changed({}, {name: value})
             except (TypeError, ValueError) as mistake:
-                raise type(mistake)(f"the search space's {name}: {mistake}") from None
+                raise type(mistake)(f"the search space's {one_line(name, LONGEST_SHOWN)}: {mistake}") from None
         held = getattr(preset.settings, name)
         if isinstance(choice, Range) and not isinstance(held, int | float | None):
-            raise TypeError(f"the search space's {name} = {held!r} is no number; allowed: a list of choices")
+            raise TypeError(f"the search space's {name} = {shown(held)} is no number; allowed: a list of choices")
 
 
 def is_whole(choice: Range, held: Any) -> bool:

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from agents.sweep.runs import SweepRun, is_finished, result_of
+from agents.sweep.runs import SweepRun, found_result, result_of
 from agents.sweep.study import Study
-from flapenv.aero.checks import record
+from flapenv.aero.checks import one_line, record
 
 
 @record
@@ -72,14 +72,15 @@ class Searched:
             study: what chooses.
             runs_of: the runs of a trial's number and settings.
             storage: of the run folders.
-            refused: told the name of a trial, and why, whose settings do not go together.
+            refused: told the name of a trial, and why, whose settings do not go together, or of a run whose folder
+                cannot be gone on with.
         """
         self._study, self._runs_of, self._storage, self._refused = study, runs_of, storage, refused
         self._waiting: list[SweepRun] = []
         self._open: dict[str, int] = {}
         self._left: dict[int, set[str]] = {}
         self._trials: dict[int, Sequence[SweepRun]] = {}
-        self._failures: dict[int, list[Failure]] = {}
+        self._failures: dict[int, dict[str, Failure]] = {}
 
     def following(self) -> SweepRun | None:
         """The next run of the batch; a new batch when all of the last one have ended."""
@@ -91,17 +92,24 @@ class Searched:
 
     def _begin(self, number: int, chosen: Mapping[str, object]) -> None:
         """Line up what is missing of a trial's runs."""
-        self._failures[number] = []
+        self._failures[number], name = {}, f"trial{number:04d}"
         try:
             self._trials[number] = runs = self._runs_of(number, chosen)
             for run in runs:
                 run.described()
         except (TypeError, ValueError) as mistake:
-            self._refused(f"trial{number:04d}", str(mistake))
-            self._failures[number].append(Failure(why=str(mistake), final=True))
+            self._refused(name, str(mistake))
+            self._failures[number][name] = Failure(why=str(mistake), final=True)
             self._left[number] = set()
             return
-        todo = [run for run in runs if not is_finished(run, self._storage)]
+        todo = []
+        for run in runs:
+            try:
+                if found_result(run, self._storage) is None:
+                    todo.append(run)
+            except (ValueError, OSError) as mistake:
+                self._refused(run.name, str(mistake))
+                self._failures[number][run.name] = Failure(why=str(mistake), final=False)
         self._left[number] = {run.name for run in todo}
         self._open |= dict.fromkeys((run.name for run in todo), number)
         self._waiting += todo
@@ -111,7 +119,7 @@ class Searched:
         number = self._open.pop(run.name)
         self._left[number].discard(run.name)
         if failure is not None:
-            self._failures[number].append(failure)
+            self._failures[number][run.name] = failure
         self._conclude()
 
     def _conclude(self) -> None:
@@ -124,8 +132,8 @@ class Searched:
                 means = [result_of(run, self._storage).mean for run in self._trials[number]]
                 known = [mean for mean in means if mean is not None]
                 self._study.tell(number, sum(known) / len(known) if len(known) == len(means) else None)
-            elif any(failure.final for failure in failures):
-                self._study.tell(number, None)
+            elif any(failure.final for failure in failures.values()):
+                self._study.tell(number, None, {name: one_line(one.why) for name, one in failures.items()})
             else:
                 self._study.give_up(number)
         self._left.clear()

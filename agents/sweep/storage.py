@@ -48,13 +48,15 @@ def opened(storage: Path, plan: SweepPlan) -> Iterator[None]:
         BlockingIOError: if another sweep runs into it.
         OSError: if it cannot be made or written.
     """
-    nearest = next((one for one in (storage, *storage.absolute().parents) if one.exists()), storage)
-    if not nearest.is_dir():
-        raise NotADirectoryError(f"--storage {storage}: {nearest} is a file; allowed: a folder")
     try:
-        storage.mkdir(parents=True, exist_ok=True)
-    except OSError as mistake:
-        raise type(mistake)(f"--storage {storage} cannot be made ({mistake}); allowed: a folder that can") from None
+        nearest = next((one for one in (storage, *storage.absolute().parents) if one.exists()), storage)
+        is_folder = nearest.is_dir()
+        if is_folder:
+            storage.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as mistake:  # no path holds a NUL, or a name that is too long
+        raise OSError(f"--storage {storage} cannot be made ({mistake}); allowed: a folder that can") from None
+    if not is_folder:
+        raise NotADirectoryError(f"--storage {storage}: {nearest} is a file; allowed: a folder")
     if not (storage / PLAN).exists() and any(one.name != ".lock" for one in storage.iterdir()):
         raise FileExistsError(
             f"--storage {storage} holds files but no {PLAN}; allowed: a sweep's folder, or an empty one"
@@ -80,6 +82,8 @@ def opened(storage: Path, plan: SweepPlan) -> Iterator[None]:
                     f"--storage {storage} holds another sweep: {'; '.join(differs)}; allowed: the same, or "
                     "another folder"
                 )
+        if (storage / RAY).is_symlink() or ((storage / RAY).exists() and not (storage / RAY).is_dir()):
+            raise NotADirectoryError(f"{storage / RAY} is no folder; allowed: a folder that Ray made, or nothing")
         write_json(storage / PLAN, {"plan": plan.to_dict()})
         remove_ray(storage)
         yield

@@ -6,8 +6,11 @@ was found before the batch and a generator seeded by the trial's number, so a se
 killed, and on however many machines.
 """
 
+import contextlib
 import itertools
-from collections.abc import Mapping
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +24,12 @@ from optuna.trial import FrozenTrial, TrialState
 
 from agents.sweep.plan import SweepPlan
 from agents.sweep.search_space import Choices, Range, is_whole
-from flapenv.aero.checks import record
+from flapenv.aero.checks import one_line, record
 from flapenv.read_json import require_file
 
 NAME = "sweep"
+FAILED = "failed"
+"""A trial's attribute: which of its runs have no result, and why."""
 ENDED = (TrialState.COMPLETE, TrialState.PRUNED)
 """With a distance, or without one: settings that diverged or do not go together count as worse than all others."""
 
@@ -37,11 +42,15 @@ class Trial:
         number: 0, 1 and so on.
         chosen: the settings.
         value: mean distance over the seeds [-]; None where there is none, or not yet.
+        ended: whether it will not be tried again.
+        failed: which runs of settings that were tried have no result, and why.
     """
 
     number: int
     chosen: Mapping[str, Any]
     value: float | None
+    ended: bool = False
+    failed: Mapping[str, str] = field(default_factory=dict)
 
 
 def distribution(choice: Range | Choices, held: Any) -> BaseDistribution:
@@ -76,8 +85,11 @@ class Study:
         if journal.exists():
             require_file(journal, str(journal))
             mend_journal(journal)
-        try:
-            storage = JournalStorage(JournalFileBackend(str(journal)))
+            with _as_optuna_writes(journal):  # of a last line that is broken it would tell only later
+                for line in journal.read_bytes().splitlines():
+                    json.loads(line)
+        with _as_optuna_writes(journal):
+            self._storage = storage = JournalStorage(JournalFileBackend(str(journal)))
             self._study = optuna.create_study(
                 storage=storage, study_name=NAME, direction="minimize", load_if_exists=True, sampler=TPESampler(seed=0)
             )
@@ -85,13 +97,6 @@ class Study:
                 if trial.state is TrialState.RUNNING and set(trial.params) != set(self._space):
                     self._study.tell(trial.number, state=TrialState.FAIL)  # killed while it was chosen: chosen again
             self.trials()
-        except OSError:
-            raise
-        except Exception as mistake:  # whatever Optuna makes of lines that it did not write
-            raise ValueError(
-                f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {mistake}; allowed: the "
-                "file as it was written, or another --storage"
-            ) from None
 
     def _raw(self) -> list[FrozenTrial]:
         """Optuna's trials, without those that were killed while they were chosen."""
@@ -100,22 +105,37 @@ class Study:
     def trials(self) -> list[Trial]:
         """All that were chosen, in their order."""
         return [
-            Trial(number=number, chosen=dict(one.params), value=one.value if one.state is TrialState.COMPLETE else None)
+            Trial(
+                number=number,
+                chosen=dict(one.params),
+                value=one.value if one.state is TrialState.COMPLETE else None,
+                ended=one.state in ENDED,
+                failed=_failed(one.user_attrs.get(FAILED)) if one.state is TrialState.PRUNED else {},
+            )
             for number, one in enumerate(self._raw())
         ]
 
     @property
     def over(self) -> bool:
-        """Whether every trial has ended, or is given up until the next time."""
+        """Whether every trial has ended; or one is given up until the next time, and with it what would follow it."""
         raw = self._raw()
-        return len(raw) >= self._plan.trials_asked and not self._going(raw)
+        return (len(raw) >= self._plan.trials_asked or bool(self._given_up)) and not self._going(raw)
 
     def _going(self, raw: list[FrozenTrial]) -> list[int]:
         """Numbers of trials that have not ended."""
         return [number for number, one in enumerate(raw) if one.state not in ENDED and number not in self._given_up]
 
     def batch(self) -> list[Trial]:
-        """The trials that are to be run now: those a kill left, or settings chosen anew."""
+        """The trials that are to be run now: those a kill left, or settings chosen anew.
+
+        Raises:
+            ValueError: if what the journal holds cannot be chosen from.
+        """
+        with _as_optuna_writes(self._journal):
+            return self._chosen()
+
+    def _chosen(self) -> list[Trial]:
+        """What `batch` returns."""
         raw = self._raw()
         behind = len(raw) - len(self._going(raw))
         size = self._plan.batch
@@ -129,9 +149,20 @@ class Study:
         going = set(self._going(self._raw()))
         return [trial for trial in self.trials() if trial.number in going]
 
-    def tell(self, number: int, value: float | None) -> None:
-        """Keep what a trial found; None if it found nothing and would not another time."""
+    def tell(self, number: int, value: float | None, failed: Mapping[str, str] | None = None) -> None:
+        """Keep what a trial found.
+
+        Args:
+            number: of the trial.
+            value: its distance; None if it found nothing and would not another time.
+            failed: which of its runs have no result, and why.
+        """
         trial = self._raw()[number]
+        if failed:
+            place = self._storage.get_trial_id_from_study_id_trial_number(
+                self._storage.get_study_id_from_name(NAME), trial.number
+            )
+            self._storage.set_trial_user_attr(place, FAILED, dict(failed))
         if value is None:
             self._study.tell(trial.number, state=TrialState.PRUNED)
         else:
@@ -140,6 +171,29 @@ class Study:
     def give_up(self, number: int) -> None:
         """Leave a trial to the next time: what stopped it was not its settings."""
         self._given_up.add(number)
+
+
+@contextlib.contextmanager
+def _as_optuna_writes(journal: Path) -> Iterator[None]:
+    """Whatever Optuna makes of lines that it did not write, in one line.
+
+    Raises:
+        ValueError: naming the journal.
+    """
+    try:
+        yield
+    except OSError:
+        raise
+    except Exception as mistake:
+        raise ValueError(
+            f"{journal} is not a journal as Optuna writes it: {type(mistake).__name__} {one_line(mistake, 300)}; "
+            "allowed: the file as it was written, or another --storage"
+        ) from None
+
+
+def _failed(told: object) -> dict[str, str]:
+    """What the journal says of failures; nothing if it is not as it was written."""
+    return {str(name): str(why) for name, why in told.items()} if isinstance(told, dict) else {}
 
 
 def mend_journal(journal: Path) -> None:

@@ -3,7 +3,7 @@
 import contextlib
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,7 +16,7 @@ from agents.sweep.cluster import reached, require_head, started
 from agents.sweep.nodes import require_fit_nodes
 from agents.sweep.plan import SweepPlan
 from agents.sweep.results import best_command, summary_of, sweep_table, trials_table, write_results
-from agents.sweep.runs import RunResult, SweepRun, is_finished, result_of
+from agents.sweep.runs import RunResult, SweepRun, found_result, result_of
 from agents.sweep.sources import Failure, Listed, Searched, Source
 from agents.sweep.storage import JOURNAL, opened, remove_ray
 from agents.sweep.study import Study, Trial
@@ -70,8 +70,8 @@ class Watched:
 
     def fail(self, name: str, why: str) -> None:
         """Say at once what has failed."""
-        self.failed[name] = why
-        tqdm.write(f"{name} failed: {one_line(why)}", file=sys.stderr)
+        self.failed[name] = one_line(why)
+        tqdm.write(f"{name} failed: {self.failed[name]}", file=sys.stderr)
 
 
 def run_sweep(
@@ -113,12 +113,20 @@ def _prepared(plan: SweepPlan, storage: Path, watched: Watched) -> tuple[Source,
     """What is to be run, of which the watch is told how much is there."""
     if not plan.search:
         runs = plan.grid()
-        todo = [run for run in runs if not is_finished(run, storage)]
-        watched.total, watched.there = len(runs), len(runs) - len(todo)
+        todo, there = [], 0
+        for run in runs:
+            try:
+                if found_result(run, storage) is None:
+                    todo.append(run)
+                else:
+                    there += 1
+            except (ValueError, OSError) as mistake:  # one folder's fault, and not the others'
+                watched.fail(run.name, str(mistake))
+        watched.total, watched.there = len(runs), there
         return Listed(todo), None
     study = Study(plan, storage / JOURNAL)
-    known = [run for trial in study.trials() for run in _runs_of(plan, trial) if _is_there(run, storage)]
-    watched.total, watched.there = plan.trials_asked * plan.seeds, len(known)
+    known = [run for trial in study.trials() for run in _runs_of(plan, trial)]
+    watched.total, watched.there = plan.trials_asked * plan.seeds, len(_results(known, storage))
     return Searched(study, plan.runs_of_trial, storage, watched.fail), study
 
 
@@ -130,9 +138,13 @@ def _runs_of(plan: SweepPlan, trial: Trial) -> Sequence[SweepRun]:
         return ()
 
 
-def _is_there(run: SweepRun, storage: Path) -> bool:
-    """Whether a run is finished; one whose task is refused is not."""
-    return (storage / run.name).is_dir() and is_finished(run, storage)
+def _results(runs: Sequence[SweepRun], storage: Path) -> list[RunResult]:
+    """Of the runs that are finished; one whose task or whose folder is refused is not."""
+    results = []
+    for run in runs:
+        with contextlib.suppress(ValueError, TypeError, OSError):
+            results.append(found_result(run, storage))
+    return [one for one in results if one is not None]
 
 
 @contextlib.contextmanager
@@ -154,13 +166,25 @@ def _run(source: Source, watched: Watched, storage: Path, at_once: int | None) -
     return not signals
 
 
+def _given_up_for_good(plan: SweepPlan, trials: Sequence[Trial], there: Collection[str]) -> dict[str, str]:
+    """What of a search has failed, now or at an earlier time, and is not tried again: why."""
+    failed: dict[str, str] = {}
+    for trial in trials:
+        if not trial.ended or trial.value is not None:
+            continue
+        missing = [run.name for run in _runs_of(plan, trial) if run.name not in there]
+        failed |= trial.failed or dict.fromkeys(missing, "its settings diverged or do not go together")
+    return failed
+
+
 def _concluded(
     plan: SweepPlan, storage: Path, study: Study | None, failed: Mapping[str, str], interrupted: bool
 ) -> Outcome:
     """Tables and files of what is there."""
     trials = [] if study is None else study.trials()
     runs = plan.grid() if study is None else [run for trial in trials for run in _runs_of(plan, trial)]
-    results = [result_of(run, storage) for run in runs if _is_there(run, storage)]
+    results = _results(runs, storage)
+    failed = {**failed, **_given_up_for_good(plan, trials, {one.run.name for one in results})}
     content: dict[str, Any] = {"plan": plan.to_dict(), "failed": dict(failed)}
     if study is None:
         groups = dict.fromkeys(run.group for run in runs)

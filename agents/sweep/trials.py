@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from agents.commands.one_line_parser import said
+from agents.file_rights import keep_others_from_writing
 from agents.presets import as_preset
 from agents.training_config import TrainingConfig, TrainingResult
 
@@ -47,6 +48,7 @@ def run_trial(trial: dict[str, Any]) -> dict[str, Any]:
     Returns:
         `mean`, the distance reached; or why there is none, in `failed`, and in `final` whether it would end so again.
     """
+    keep_others_from_writing()  # the node was started by whatever shell
     deadline = time.monotonic() + PATIENCE
     while True:
         try:

@@ -64,6 +64,33 @@ def test_all_insects_and_the_wings_of_a_pool_are_far_within() -> None:
         assert low < high
 
 
+def scaled(name: str, size: float) -> Insect:
+    """An insect whose every length is so many times larger, flapping slower with it."""
+    base = load_insect(name)
+    return dataclasses.replace(
+        base,
+        name="mine",
+        mass=max(base.mass * size**3, 1e-14),  # the least but a little that an insect may have
+        wing=dataclasses.replace(base.wing, length=base.wing.length * size, mean_chord=base.wing.mean_chord * size),
+        stroke=dataclasses.replace(base.stroke, frequency=base.stroke.frequency * size**-0.5),
+        k_table=None,
+    )
+
+
+def test_from_a_thrips_to_an_ornithopter_of_16_m_everything_flies() -> None:
+    smallest, largest = load_insect("fruitfly"), load_insect("hawkmoth")
+    flyers = [scaled("fruitfly", 0.5e-3 / smallest.wing.length), scaled("hawkmoth", 8.0 / largest.wing.length)]
+    with np.errstate(all="raise"):
+        require_flyable(flyers, HoverModel())
+
+
+@pytest.mark.parametrize(("name", "length"), [("fruitfly", 0.5e-6), ("hawkmoth", 8e3)])
+def test_a_thousand_times_smaller_or_larger_is_refused(name: str, length: float) -> None:
+    insect = scaled(name, length / load_insect(name).wing.length)
+    with pytest.raises(ValueError, match=r"insect mine: wing length = .* is not allowed in an environment"):
+        require_flyable([insect], HoverModel())
+
+
 @given(
     scales=st.fixed_dictionaries({"length": st.floats(-2, 2), "mass": st.floats(-3, 3), "frequency": st.floats(-2, 2)}),
     kind=st.sampled_from(QUICK),

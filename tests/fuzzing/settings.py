@@ -15,6 +15,7 @@ from agents.competition.compete import CompetitionConfig
 from agents.explorer.cases import EXPLORED, Cases
 from agents.explorer.controls import OWN_WING, WING_CONTROLS, read_insect, read_stroke, shown_stroke, stroke_controls
 from agents.presets import PRESETS, setting_of
+from agents.sweep.command import plan_of, sweep_parser
 from agents.training_config import TrainingConfig
 from flapenv import INSECTS, load_insect
 from flapenv.aero.checks import LONGEST_LINE, require_count
@@ -56,6 +57,18 @@ WORDS = (
     "--wings",
     "--competitors",
     "--policy",
+    "--problems",
+    "--search",
+    "--space",
+    "--trials",
+    "--batch",
+    "--storage",
+    "--resume",
+    "--address",
+    "rows=1:8",
+    "learning_rate=1e-3:1e-2:log",
+    "activation=relu,tanh",
+    "2",
     "--help",
     "-h",
     "--",
@@ -179,7 +192,7 @@ def page_answers(data: bytes) -> Any:
 def command_line(data: bytes) -> Any:
     """Words of a command line, up to where training, solving or serving would begin."""
     draw = Draw(data)
-    name = draw.one_of(("train", "evaluate", "optimum", "explore", "benchmark", "compare"))
+    name = draw.one_of(("train", "evaluate", "optimum", "explore", "benchmark", "compare", "sweep"))
     words = [draw.one_of(WORDS) if draw.byte() % 8 else draw.text() for _ in range(draw.byte() % 8)]
     said = io.StringIO()
     try:
@@ -201,6 +214,7 @@ def _asked(name: str, words: list[str]) -> Any:
         "explore": explore.parser,
         "benchmark": benchmark_parser,
         "compare": compare.parser,
+        "sweep": sweep_parser,
     }[name]
     options = _parsed(name, parse).parse_args(words)
     if name == "train":
@@ -218,6 +232,11 @@ def _asked(name: str, words: list[str]) -> Any:
         if given["seeds"] and given["seeds"] > 1000:
             return None
         return BenchmarkConfig(**{key: value for key, value in given.items() if value is not None})
+    if name == "sweep":
+        if options.seeds and options.seeds > 100:
+            return None
+        asked, _ = plan_of(options)
+        return asked.to_dict()
     config = CompetitionConfig(
         problem=options.problem,
         insects=options.insects,

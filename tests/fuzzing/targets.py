@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from fuzzing import checkpoints, environments, files, seeds, settings
+from fuzzing import checkpoints, environments, files, seeds, settings, sweeps
 
 RAW = bytes([files.RAW])
 
@@ -54,6 +54,11 @@ TARGETS: dict[str, Target] = {
     "config-json": Target(call=files.config, share=8, corpus=_raw(seeds.config_documents()), longest=3000),
     "policy": Target(call=files.policy, share=6),
     "checkpoint": Target(call=checkpoints.checkpoint, share=3),
+    "sweep-json": Target(call=sweeps.plan, share=4, corpus=_raw(sweeps.plan_documents()), longest=2000),
+    "space-json": Target(call=sweeps.space, share=8, corpus=_raw(sweeps.space_documents()), longest=1000),
+    "search-words": Target(call=sweeps.search_words, share=10),
+    "run-results": Target(call=sweeps.results, share=8, corpus=_raw(sweeps.result_documents()), longest=1000),
+    "search-journal": Target(call=sweeps.journal, share=0.5),
     "settings": Target(call=settings.settings, share=14),
     "training-config": Target(call=settings.training_config, share=8),
     "insect": Target(call=settings.insect, share=14),

@@ -18,11 +18,36 @@ from fuzzing.draw import Draw
 from fuzzing.targets import SPREAD, TARGETS, target_of
 from fuzzing.verdict import LONGEST, FindingError, judge, refused, require_finite
 
-FEW = {"checkpoint": 20, "page-answers": 20, "strokes-judged": 10, "insects-hover": 4, "problems-hover": 8}
+FEW = {
+    "checkpoint": 20,
+    "page-answers": 20,
+    "strokes-judged": 10,
+    "insects-hover": 4,
+    "problems-hover": 8,
+    "search-journal": 20,
+}
 """Inputs of targets that take long; of the others there are `MANY`."""
 MANY = 60
-BUILT = ("policy", "checkpoint", "settings", "insect", "problem", "page-answers", "actions-hover")
-READERS = ("strokes-json", "strokes-csv", "wing-json", "planform-csv", "config-json")
+BUILT = (
+    "policy",
+    "checkpoint",
+    "settings",
+    "insect",
+    "problem",
+    "page-answers",
+    "actions-hover",
+    "search-journal",
+)
+READERS = (
+    "strokes-json",
+    "strokes-csv",
+    "wing-json",
+    "planform-csv",
+    "config-json",
+    "sweep-json",
+    "space-json",
+    "run-results",
+)
 
 
 @pytest.mark.parametrize("name", TARGETS)

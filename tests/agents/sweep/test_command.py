@@ -86,6 +86,7 @@ def test_bad_input_is_one_line_and_exit_code_2(
 
 
 def test_what_listens_but_is_no_head_is_refused_in_time(silent: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("RAY_AUTH_TOKEN", "mine")
     monkeypatch.setattr(cluster, "GREETING", 2.0)
     started = time.monotonic()
     with pytest.raises(ConnectionError, match=f"--address {silent} answers, but not as the head of a Ray cluster"):

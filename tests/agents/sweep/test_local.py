@@ -1,14 +1,20 @@
 """Sweeps on one machine, for real: stopped, killed, gone on with, and equal to the same runs alone."""
 
 import json
+import os
+import re
+import secrets
 import signal
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from loopback_nodes import children
 from sweeps_alone import TINY, finished, require_same_as_alone, tiny_plan, until
 
+from agents.run_folder import CONFIG
+from agents.sweep.cluster import require_head
 from agents.sweep.storage import JOURNAL, RAY
 
 pytestmark = pytest.mark.slow
@@ -69,3 +75,46 @@ def test_a_search_that_was_killed_finds_what_it_would_have_found_and_names_what_
     means = [trial["mean"] for trial in first["trials"]]
     assert means.count(None) == 1
     assert f" {100 * min(mean for mean in means if mean is not None):.3g}" in printed[0].splitlines()[2]
+
+
+LISTENING = "0A"
+
+
+def addresses(process: int) -> set[str]:
+    """Addresses that a process and all that it started listen on, as the system writes them."""
+    below = [process]
+    for one in below:
+        below += children(one)
+    inodes = set()
+    for one in below:
+        for descriptor in Path(f"/proc/{one}/fd").iterdir():
+            if descriptor.is_symlink() and (match := re.fullmatch(r"socket:\[(\d+)\]", str(descriptor.readlink()))):
+                inodes.add(match[1])
+    found = set()
+    for table in ("tcp", "tcp6"):
+        for line in Path(f"/proc/net/{table}").read_text().splitlines()[1:]:
+            words = line.split()
+            if words[3] == LISTENING and words[9] in inodes:
+                found.add(words[1].rpartition(":")[0])
+    return found
+
+
+def test_a_sweep_is_heard_on_the_loopback_alone_asks_for_a_token_and_ends_when_its_node_is_killed(
+    begin: Begin, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    storage = tmp_path / "sweep"
+    sweep = begin("--presets", "hover-ppo", "--seeds", "1", *TINY, "--storage", str(storage), "--jobs", "1")
+    until(lambda: any(storage.glob(f"*/{CONFIG}")), sweep)
+    told = {one: Path(f"/proc/{one}/cmdline").read_text().split("\0") for one in children(sweep.pid)}
+    [raylet] = [one for one, words in told.items() if words[0].endswith("/raylet")]
+    [head] = [word.partition("=")[2] for word in told[raylet] if word.startswith("--gcs-address=")]
+    assert addresses(sweep.pid)
+    assert addresses(sweep.pid) <= {"0100007F", "0000000000000000FFFF00000100007F", "00000000000000000000000001000000"}
+    monkeypatch.setenv("RAY_AUTH_TOKEN", secrets.token_hex(32))
+    with pytest.raises(PermissionError, match="does not accept the token"):
+        require_head(head)
+    os.kill(raylet, signal.SIGKILL)
+    out, err = sweep.communicate(timeout=120)
+    assert sweep.returncode == 2
+    assert not out
+    assert re.fullmatch(r"train\.py sweep: Ray has failed: .*; finished runs are kept, and the same .* goes on\n", err)

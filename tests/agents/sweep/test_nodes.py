@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from agents.sweep import nodes
 from agents.sweep.nodes import installed, look, require_fit
 
 
@@ -33,6 +34,19 @@ def test_a_storage_that_a_node_cannot_write_or_does_not_share_is_refused(tmp_pat
         require_fit("node a", answer, installed(), elsewhere / "probe")
 
 
-def test_the_digest_is_of_the_code() -> None:
+def test_the_digest_is_of_the_code_its_names_and_its_content(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(installed()["source"]) == 12
     assert installed() == installed()
+    monkeypatch.setattr(nodes, "ROOT", tmp_path)
+    seen = [installed()["source"]]
+    for name in ("flapenv/deep/a.py", "agents/b.py"):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True)
+        for text in ("x = 1", "x = 2"):
+            path.write_text(text)
+            seen.append(installed()["source"])
+    (tmp_path / "agents" / "b.py").rename(tmp_path / "agents" / "c.py")
+    seen.append(installed()["source"])
+    assert len(set(seen)) == len(seen)
+    (tmp_path / "agents" / "notes.txt").write_text("no code")
+    assert installed()["source"] == seen[-1]

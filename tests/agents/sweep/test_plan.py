@@ -126,3 +126,24 @@ def test_a_file_with_a_mistake_is_named(content: dict[str, Any]) -> None:
 
 def test_train_knows_the_command() -> None:
     assert train.COMMANDS["sweep"] == "agents.sweep.command"
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"problems": [{"a": 1}]},
+        {"insects": [["hawkmoth"]]},
+        {"presets": [None]},
+        {"settings": [None] * 3000},
+        {"search": "x" * 3000},
+        {"presets": {"\n": "x" * 3000}},
+        {"insects": ["\x1b[2J", "\x1b[2J"]},
+        {"insects": ["x" * 3000] * 2},
+    ],
+)
+def test_what_a_changed_file_may_hold_is_refused_in_one_short_line(told: dict[str, Any]) -> None:
+    with pytest.raises((TypeError, ValueError), match="allowed") as caught:
+        SweepPlan.from_dict({"presets": ["hover-ppo"], **told}, "sweep.json")
+    assert str(caught.value).startswith("sweep.json: ")
+    assert str(caught.value).isprintable()
+    assert len(str(caught.value)) < 500

@@ -1,6 +1,7 @@
 """Tables and files of what a sweep found."""
 
 import csv
+import dataclasses
 import json
 from pathlib import Path
 
@@ -50,6 +51,15 @@ def test_a_line_of_the_table_says_mean_worst_and_interval_over_the_seeds() -> No
     assert "4/6" in table
     for cell in ("2.75", "2.5", "15", "1,000", "IQM", "95 % interval"):
         assert cell in table
+
+
+def test_seconds_and_wingbeats_of_a_line_are_medians() -> None:
+    runs = [
+        dataclasses.replace(one, seconds=seconds, wingbeats=wingbeats)
+        for one, seconds, wingbeats in zip(results(0.1, 0.1, 0.1), (1.0, 2.0, 90.0), (70, 10, 20), strict=True)
+    ]
+    found = summary_of("hover-ppo", runs, 3)
+    assert (found["seconds"], found["wingbeats"]) == (2.0, 20.0)
 
 
 def test_a_group_without_results_has_dashes_and_runs_without_a_distance_are_left_out_of_the_means() -> None:

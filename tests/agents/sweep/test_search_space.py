@@ -68,7 +68,7 @@ def test_any_text_is_a_dimension_or_an_error_of_one_line(text: str) -> None:
         ("rows=1:8:log:log", "follows the ends"),
         ("rows=1:nan", "not finite"),
         ("rows=1:inf", "not finite"),
-        ("rows=one:two", "could not convert"),
+        ("rows=one:two", "'one' is no number"),
         ("rows=1,,2", "a choice is empty"),
         ("rows=1", "two or more"),
         ("rows=1,1", "each once"),
@@ -129,3 +129,16 @@ def test_a_range_is_of_whole_numbers_where_ends_and_setting_are() -> None:
     assert not is_whole(Range(low=1, high=8), 0.5)
     assert not is_whole(Range(low=1, high=8.5), 4)
     assert math.isclose(Range(low=1, high=8.5).high, 8.5)
+
+
+@pytest.mark.parametrize("name", ["\x1b[2J", "a\nb", "x" * 3000])
+def test_names_that_nobody_would_write_change_no_screen(name: str) -> None:
+    for told in (1, {name: 2}):
+        with pytest.raises(TypeError, match="allowed") as caught:
+            space_of({name: told}, "it")
+        assert str(caught.value).isprintable()
+        assert len(str(caught.value)) < 500
+    with pytest.raises(ValueError, match="allowed") as bad:
+        dimension_of(f"{name}=1:{name}")
+    assert str(bad.value).isprintable()
+    assert len(str(bad.value)) < 500

@@ -71,7 +71,7 @@ def test_runs_of_an_earlier_time_are_counted_and_not_made_again(tmp_path: Path, 
     assert [trial.value for trial in study.trials()] == [None, None]
 
 
-def test_settings_that_diverge_count_as_tried_and_others_wait_for_the_next_time(
+def test_settings_that_diverge_count_as_tried_and_others_wait_for_the_next_time_with_all_that_follows(
     tmp_path: Path, refused: list[tuple[str, str]]
 ) -> None:
     source, study = search(tmp_path, refused)
@@ -81,13 +81,33 @@ def test_settings_that_diverge_count_as_tried_and_others_wait_for_the_next_time(
         if failure is None:
             finish(run, tmp_path)
         source.ended(run, failure)
-    for run in list(iter(source.following, None)):
-        finish(run, tmp_path)
-        source.ended(run, None)
-    assert source.over
-    assert [trial.value for trial in study.trials()] == [None, None, 0.01]
-    again, _ = search(tmp_path, refused)
-    assert [run.name for run in iter(again.following, None)] == ["trial0001-seed0"]
+    assert source.following() is None
+    assert source.over  # whatever it chose now it would choose without knowing the second trial
+    assert [(trial.ended, trial.failed) for trial in study.trials()] == [
+        (True, {"trial0000-seed0": "diverged"}),
+        (False, {}),
+    ]
+    again, study = search(tmp_path, refused)
+    [run] = list(iter(again.following, None))
+    assert run.name == "trial0001-seed0"
+    finish(run, tmp_path)
+    again.ended(run, None)
+    assert [run.name for run in iter(again.following, None)] == ["trial0002-seed0", "trial0002-seed1"]
+    assert study.trials()[0].failed == {"trial0000-seed0": "diverged"}
+
+
+def test_a_run_whose_folder_is_another_s_is_told_and_the_others_go_on(
+    tmp_path: Path, refused: list[tuple[str, str]]
+) -> None:
+    (tmp_path / "trial0000-seed0").mkdir()
+    (tmp_path / "trial0000-seed0" / "thesis.txt").touch()
+    source, study = search(tmp_path, refused)
+    names = [run.name for run in iter(source.following, None)]
+    assert names == ["trial0000-seed1", "trial0001-seed0", "trial0001-seed1"]
+    [(name, why)] = refused
+    assert name == "trial0000-seed0"
+    assert "holds 'thesis.txt' but no config.json; allowed: a run's folder, or an empty one" in why
+    assert not any(trial.ended for trial in study.trials())
 
 
 def test_a_policy_without_a_distance_counts_as_tried(tmp_path: Path, refused: list[tuple[str, str]]) -> None:

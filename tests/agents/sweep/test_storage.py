@@ -1,5 +1,6 @@
 """The folder of a sweep: one plan, one process at a time, and run folders that say what is finished."""
 
+import json
 import os
 import re
 from pathlib import Path
@@ -122,5 +123,19 @@ def test_results_that_are_no_runs_are_refused(tmp_path: Path) -> None:
     run = TINY.grid()[0]
     finish(run, tmp_path)
     (tmp_path / run.name / RESULTS).write_text('{"verdict": {"mean": "low"}}')
-    with pytest.raises(ValueError, match=r"results\.json is not a run's: ValueError"):
+    with pytest.raises(ValueError, match=r"results\.json is not a run's: "):
+        result_of(run, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("seconds", "nan"), ("seconds", -1), ("wingbeats", 1.5), ("mean", "nan"), ("worst", [1])]
+)
+def test_numbers_of_results_that_are_none_are_refused(name: str, value: object, tmp_path: Path) -> None:
+    run = TINY.grid()[0]
+    finish(run, tmp_path)
+    path = tmp_path / run.name / RESULTS
+    told = json.loads(path.read_text())
+    (told if name in told else told["verdict"])[name] = value
+    path.write_text(json.dumps(told))
+    with pytest.raises(ValueError, match=rf"results\.json is not a run's: \w+ {name} = .*; allowed"):
         result_of(run, tmp_path)

@@ -108,3 +108,12 @@ def test_a_journal_of_something_else_is_refused_in_one_line(content: bytes, tmp_
     journal.write_bytes(content)
     with pytest.raises(ValueError, match=r"search\.jsonl is not a journal as Optuna writes it: .*allowed"):
         Study(PLAN, journal)
+
+
+@pytest.mark.parametrize("line", [b'{"op_code": \n', b"\xff\xfe\n", b'"\n'])
+def test_a_last_line_that_is_no_json_is_told_at_once(line: bytes, tmp_path: Path) -> None:
+    journal = tmp_path / "search.jsonl"
+    Study(PLAN, journal).batch()
+    journal.write_bytes(journal.read_bytes() + line)
+    with pytest.raises(ValueError, match=r"search\.jsonl is not a journal as Optuna writes it: .*; allowed: the file"):
+        Study(PLAN, journal)

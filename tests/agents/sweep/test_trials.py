@@ -1,5 +1,6 @@
 """What a worker does with a run: its mistakes are results, and a folder that is still held is waited for."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,25 @@ def test_a_run_goes_on_in_its_folder_and_tells_its_distance(tmp_path: Path, monk
     assert config == RUN.config.to_dict()
     assert out == tmp_path / RUN.name
     assert how == {"progress": False, "report": False, "resume": True}
+
+
+@pytest.mark.parametrize(("before", "after"), [(0o000, 0o022), (0o007, 0o027), (0o077, 0o077)])
+def test_others_may_not_change_what_a_run_writes_whatever_its_node_allows(
+    before: int, after: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found: list[int] = []
+
+    def train(_: Any, out: Path) -> TrainingResult:
+        found.append(os.umask(0o077))
+        return ended(out, 0.25)
+
+    monkeypatch.setattr(trials, "go_on", train)
+    own = os.umask(before)
+    try:
+        run_trial(trial(tmp_path))
+    finally:
+        os.umask(own)
+    assert found == [after]
 
 
 @pytest.mark.parametrize(
