@@ -161,3 +161,10 @@ def test_arrays_with_types_that_numpy_does_not_have_are_refused(tmp_path: Path) 
     signed(tmp_path, arrays=told)
     with pytest.raises(ValueError, match="holds no arrays"):
         read_checkpoint(tmp_path)
+
+
+def test_what_a_killed_writer_left_half_written_goes_with_the_next_checkpoint(tmp_path: Path) -> None:
+    write_checkpoint(tmp_path, SAMPLE)
+    (tmp_path / ".partial-0123.safetensors").write_bytes(b"half")
+    write_checkpoint(tmp_path, SAMPLE)
+    assert not list(tmp_path.glob(".partial-*"))
