@@ -86,12 +86,14 @@ def test_seconds_of_training_go_on_from_those_before_and_leave_out_watching(
     curve.measure()
     clock.now += 1
     assert curve.seconds == 3
+    curve.next = 123.0
     state = json.loads(json.dumps(curve.state(), allow_nan=False))
     text = (tmp_path / "curve.csv").read_text()
 
     (tmp_path / "curve.csv").write_text(text + "half a li")
     after = LearningCurve(tmp_path, Slow(), 1000, state)
     assert (tmp_path / "curve.csv").read_text() == text
+    assert after.next == 123
     clock.now += 40
     after.init_callback(model)
     after.on_training_start({}, {})
