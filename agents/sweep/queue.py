@@ -78,8 +78,12 @@ class RunQueue(Searcher):
         """Nothing, for the same reason."""
 
     def restore(self, checkpoint_path: str) -> None:
-        """Never: Tune's states are pickles."""
-        raise NotImplementedError("a sweep is gone on with from its run folders")
+        """Never: Tune's states are pickles.
+
+        Raises:
+            RuntimeError: whatever is asked for.
+        """
+        raise RuntimeError(f"{checkpoint_path} is Tune's and a pickle; allowed: going on from the run folders")
 
 
 class Interrupts(tune.Callback):

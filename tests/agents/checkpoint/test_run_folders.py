@@ -15,6 +15,17 @@ from agents.run_folder import CHECKPOINT
 from agents.training import DivergedError, TrainingConfig, make_model, train
 
 
+@pytest.fixture
+def killed(killed_at: Callable[[int | None], None], tmp_path: Path) -> TrainingConfig:
+    """A run that was killed at its third checkpoint, after 256 wingbeats."""
+    asked = config("hover-ppo")
+    killed_at(3)
+    with pytest.raises(KilledError):
+        quietly(asked, tmp_path)
+    killed_at(None)
+    return asked
+
+
 def test_what_a_kill_leaves_of_a_checkpoint_goes_when_the_run_is_asked_for_again(tmp_path: Path) -> None:
     asked = config("hover-ppo")
     quietly(asked, tmp_path)
@@ -60,8 +71,8 @@ def test_what_is_in_the_way_is_told_before_anything_is_trained(name: str, tmp_pa
         quietly(config("hover-ppo"), tmp_path, resume=True)
 
 
-def test_a_full_disk_for_the_report_keeps_the_checkpoint_and_another_mistake_in_it_does_not(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_a_full_disk_for_the_report_keeps_the_checkpoint_until_there_is_room(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     asked = config("hover-ppo")
 
@@ -78,13 +89,9 @@ def test_a_full_disk_for_the_report_keeps_the_checkpoint_and_another_mistake_in_
 
 
 def test_a_run_that_goes_on_with_other_versions_or_another_config_is_told(
-    killed_at: Callable[[int | None], None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    killed: TrainingConfig, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked = config("hover-ppo")
-    killed_at(3)
-    with pytest.raises(KilledError):
-        quietly(asked, tmp_path)
-    killed_at(None)
+    asked = killed
     path = tmp_path / "config.json"
     content = json.loads(path.read_text(encoding="utf-8"))
     content["versions"]["torch"] = "1.0"
@@ -100,12 +107,8 @@ def test_a_run_that_goes_on_with_other_versions_or_another_config_is_told(
     assert "goes on from 256 wingbeats" in said
 
 
-def test_an_older_config_that_tells_less_goes_on(killed_at: Callable[[int | None], None], tmp_path: Path) -> None:
-    asked = config("hover-ppo")
-    killed_at(3)
-    with pytest.raises(KilledError):
-        quietly(asked, tmp_path)
-    killed_at(None)
+def test_an_older_config_that_tells_less_goes_on(killed: TrainingConfig, tmp_path: Path) -> None:
+    asked = killed
     path = tmp_path / "config.json"
     content = json.loads(path.read_text(encoding="utf-8"))
     path.write_text(json.dumps({key: content[key] for key in ("task", "algorithm", "settings")}), encoding="utf-8")
@@ -113,12 +116,9 @@ def test_an_older_config_that_tells_less_goes_on(killed_at: Callable[[int | None
 
 
 def test_weights_that_are_destroyed_do_not_take_the_place_of_the_last_checkpoint(
-    killed_at: Callable[[int | None], None], tmp_path: Path
+    killed: TrainingConfig, tmp_path: Path
 ) -> None:
-    asked = config("hover-ppo")
-    killed_at(3)
-    with pytest.raises(KilledError):
-        quietly(asked, tmp_path)
+    asked = killed
     before = (tmp_path / CHECKPOINT / STATE).read_bytes()
     task = asked.preset.make_task()
     run = Learning(asked, task, make_model(asked.preset, task, asked.seed), tmp_path)
